@@ -4,7 +4,7 @@ import signal
 import time
 
 import support
-from support import BLOCK, CommandLine, plica, start
+from support import BLOCK, CommandLine, ended, running
 
 TARGETS = """\
 [monitor.end]
@@ -29,9 +29,7 @@ class Calibrate(CommandLine):
         self.file = self.folder / "calibrated.toml"
 
     def calibrate(self, *arguments, status=0, text=SOFT):
-        result = plica("calibrate", self.write(text), *arguments)
-        self.assertEqual(result.returncode, status, f"{result.args}\n{result.stdout}{result.stderr}")
-        return result
+        return self.call("calibrate", self.write(text), *arguments, status=status)
 
     def test_one_key_one_target(self):
         result = self.calibrate("--vary", f"{STIFFNESS}=0.1:20", "--target", "end.position_um=28~0.001", "--out", self.file)
@@ -43,8 +41,7 @@ class Calibrate(CommandLine):
         self.assertEqual(trials[-1][-1], "met")
         self.assertLess(len(trials), 9)
         # The file repeats the trial, and says what was expected of it.
-        again = plica("run", self.file, "--out", self.out, "--quiet")
-        self.assertEqual(again.returncode, 0, again.stderr)
+        self.call("run", self.file, "--out", self.out, "--quiet")
         self.assertAlmostEqual(self.summary()["end.position_um"], 28, delta=0.001)
         self.assertIn('base = "scenario.toml"', self.file.read_text())
 
@@ -76,7 +73,7 @@ class Calibrate(CommandLine):
         for key, wanted, words in cases:
             with self.subTest(key=key, wanted=wanted):
                 result = self.calibrate("--vary", key, "--target", wanted, "--out", self.file, status=2)
-                self.assertIn(words, self.assert_messages(result)[0])
+                self.assert_says(result, words)
                 self.assertEqual(result.stdout, "")
         self.assertFalse(self.file.exists())
         self.calibrate("--vary", vary, status=2)
@@ -93,17 +90,15 @@ class Calibrate(CommandLine):
         self.calibrate(*arguments, "--out", self.folder / "x.txt", status=2)
 
     def test_interrupted_it_leaves_the_best_so_far(self):
-        support.count_case()
         slow = SOFT.replace("step_s = 0.5", "step_s = 0.001")
-        process = start("calibrate", self.write(slow), "--vary", f"{STIFFNESS}=0.1:20", "--target",
-                        "end.position_um=28~1e-12", "--out", self.file)  # fmt: skip
-        process.stdout.readline()
-        process.stdout.readline()  # the first trial
-        time.sleep(0.05)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 130, errors)
-        self.assertIn("interrupted after", errors)
+        with running("calibrate", self.write(slow), "--vary", f"{STIFFNESS}=0.1:20", "--target", "end.position_um=28~1e-12", "--out", self.file) as process:
+            process.stdout.readline()
+            process.stdout.readline()  # the first trial
+            time.sleep(0.05)
+            process.send_signal(signal.SIGINT)
+            result = ended(process)
+        self.assertEqual(result.returncode, 130, result.stderr)
+        self.assertIn("interrupted after", result.stderr)
         self.assertIn("# Best result found", self.file.read_text())
 
 

@@ -3,7 +3,7 @@ import json
 import shutil
 
 import support
-from support import BLOCK, SPHERE, CommandLine, plica, read_vtu, table
+from support import BLOCK, SPHERE, CommandLine, read_vtu, table
 
 MONITOR = '[monitor.motion]\nquantity = "displacement"\n[monitor.cpu]\nquantity = "wall"\n'
 
@@ -15,9 +15,7 @@ class Compare(CommandLine):
         return out
 
     def compare(self, *arguments, status=0):
-        result = plica("compare", *arguments)
-        self.assertEqual(result.returncode, status, result.stdout + result.stderr)
-        return result
+        return self.call("compare", *arguments, status=status)
 
     def json_of(self, *arguments):
         return json.loads(self.compare(*arguments, "--json").stdout, parse_constant=lambda name: self.fail(name))
@@ -84,7 +82,7 @@ class Compare(CommandLine):
         self.assertGreater(max(distances), 1e-4)
         self.assertIn("deviation_um", arrays)
         before = mesh.read_bytes()
-        self.assertIn("--overwrite", self.assert_messages(self.compare(a, b, "--out", mesh, status=4))[0])
+        self.assert_says(self.compare(a, b, "--out", mesh, status=4), "--overwrite")
         self.compare(a, a, "--out", mesh, "--overwrite")
         self.assertNotEqual(mesh.read_bytes(), before)
         self.assertLess(max(read_vtu(mesh)["distance_um"][1]), 1e-12)
@@ -107,9 +105,8 @@ class Compare(CommandLine):
         for directory, part in cases:
             for order in ((a, directory), (directory, a)):
                 with self.subTest(f"{part} {order}"):
-                    self.assertIn(part, self.assert_messages(self.compare(*order, status=4))[0])
-        message = self.assert_messages(self.compare(a, a, "--time_s", "0.3", status=2))[0]
-        self.assertIn("0.2", message)
+                    self.assert_says(self.compare(*order, status=4), part)
+        self.assert_says(self.compare(a, a, "--time_s", "0.3", status=2), "0.2")
         self.compare(a, status=2)
         self.compare(a, a, "--time_s", "nan", status=2)
         # Without a summary, as a killed run leaves it, and without a scenario: what is there is compared.
@@ -121,7 +118,7 @@ class Compare(CommandLine):
         self.assertEqual((found["nodes"]["max_um"], found["relative_energy_norm"], found["series"]), (0, None, {}))
         self.assertIsNone(found["b"]["status"])
         (killed / "summary.json").write_text("{")
-        self.assertIn("summary.json", self.assert_messages(self.compare(a, killed, status=4))[0])
+        self.assert_says(self.compare(a, killed, status=4), "summary.json")
 
 
 if __name__ == "__main__":

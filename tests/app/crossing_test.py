@@ -1,18 +1,10 @@
 """A tissue that passes through itself says so: on the terminal, in summary, series, cells and pictures; the report's own
 notice is in viewer/tests."""
-import csv
-
 import support
-from support import CommandLine, plica
+from support import CommandLine, block, table
 
 # A strip that curls up until its ends pass through it.
-SHEET = """
-[embryo]
-shape = "block"
-length_um = 600
-width_um = 20
-cell_height_um = 10
-cells = [60, 2, 1]
+SHEET = block(600, 20, 10, [60, 2, 1]) + """\
 [dynamics]
 surface_drag_Pa_s_per_um = 20
 [contraction.apical]
@@ -62,20 +54,17 @@ class Crossing(CommandLine):
         warnings = [line for line in result.stderr.splitlines() if line.startswith("warning: the tissue self-intersects")]
         self.assertEqual(len(warnings), 1, result.stderr)
         self.assertRegex(warnings[0], r"at t = [\d.]+ min \w+ faces of cells \d+ and \d+ cross at x = .* um \(\d+ pairs")
-        with open(self.out / "series.csv", encoding="utf-8") as file:
-            pairs = [int(row["self_intersections"]) for row in csv.DictReader(file)]
+        pairs = [int(row["self_intersections"]) for row in table(self.out / "series.csv")]
         self.assertEqual(pairs[0], 0)
         self.assertEqual(self.summary()["self_intersections"], max(pairs))
         self.assertGreater(max(pairs), 0)
-        with open(self.out / "cells.csv", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file))
+        rows = table(self.out / "cells.csv")
         flagged = [row for row in rows if row["self_intersecting"] == "1"]
         self.assertTrue(0 < len(flagged) < len(rows))
         last = [row for row in rows if row["time_s"] == rows[-1]["time_s"]]
         self.assertEqual(len(last), 120)
         picture = self.folder / "last.png"
-        drawn = plica("render", self.out, "--out", picture, "--time", "last", "--color", "self-intersections")
-        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        self.call("render", self.out, "--out", picture, "--time", "last", "--color", "self-intersections")
         self.assertTrue(picture.exists())
         self.assertIn('id="crossing"', (self.out / "report.html").read_text(encoding="utf-8"))
 

@@ -13,8 +13,8 @@ import unittest
 from pathlib import Path
 
 import support
-from resuming import DIVIDING, LOST, Resuming, rows_in
-from support import BLOCK, SPHERE, plica, start
+from resuming import DIVIDING, LOST, Resuming
+from support import BLOCK, SPHERE, ended, plica, rows_in, running
 
 SHORT = [("time.end_s", "1.2"), ("division.all.region", '"all"'), ("division.all.at_s", "0.5"), ("division.all.growth_s", "0.3")]
 EVERY, LONG = 10, False
@@ -70,9 +70,7 @@ class FailingDisk(Resuming):
                 shutil.rmtree(self.out)
                 result, _ = self.run_on_failing_disk(call, number)
                 self.assertEqual(result.returncode, 4, f"{result.stdout}{result.stderr}")
-                message = self.assert_messages(result)[0]
-                for part in (str(self.out), reason, "--resume"):
-                    self.assertIn(part, message)
+                self.assert_says(result, str(self.out), reason, "--resume")
                 self.assert_whole(self.out)  # nor is anything left that is half written
                 rows = rows_in(self.out)
                 resumed = self.resumed(self.scenario)
@@ -110,35 +108,22 @@ class FailingDisk(Resuming):
 
 
 class Directory(Resuming):
-    def begin(self):
-        """A long run, some steps after its beginning."""
-        support.count_case()
-        self.scenario = [self.write(BLOCK), "--set", "time.end_s=20"]
-        self.whole = self.whole_run(self.scenario)
-        process = start("run", self.write(BLOCK), "--set", "time.end_s=1e9", "--out", self.out, "--quiet")
-        self.addCleanup(process.communicate)
-        self.addCleanup(process.kill)
-        while process.poll() is None and rows_in(self.out) < 50:
-            pass
-        return process
-
-    def ended(self, process):
-        process.stdout_text, process.stderr_text = process.communicate(timeout=60)
-        result = subprocess.CompletedProcess(process.args, process.returncode, process.stdout_text, process.stderr_text)
-        self.assertEqual(result.returncode, 4, result.stderr)
-        self.assertIn(str(self.out), self.assert_messages(result)[0])
-
     def test_removed(self):
-        process = self.begin()
-        moved = self.folder / "moved"
-        self.out.rename(moved)
-        self.ended(process)
+        scenario = [self.write(BLOCK), "--set", "time.end_s=20"]
+        whole, moved = self.whole_run(scenario), self.folder / "moved"
+        with running("run", self.write(BLOCK), "--set", "time.end_s=1e9", "--out", self.out, "--quiet") as process:
+            while process.poll() is None and rows_in(self.out) < 50:
+                pass
+            self.out.rename(moved)
+            result = ended(process)
+        self.assertEqual(result.returncode, 4, result.stderr)
+        self.assert_says(result, str(self.out))
         self.assertFalse(self.out.exists(), "the directory came back")
         moved.rename(self.out)
-        self.assertIn("resuming after step", self.resumed(self.scenario, "--set", "time.end_s=1e3", "--set", "time.step_s=20").stdout)
+        self.assertIn("resuming after step", self.resumed(scenario, "--set", "time.end_s=1e3", "--set", "time.step_s=20").stdout)
         shutil.rmtree(self.out)
-        self.resumed(self.scenario)
-        self.assert_same(self.out, self.whole)
+        self.resumed(scenario)
+        self.assert_same(self.out, whole)
 
 
 class Memory(Resuming):
@@ -163,7 +148,7 @@ class Memory(Resuming):
                 ends[result.returncode] = ends.get(result.returncode, 0) + 1
                 self.assertIn(result.returncode, (0, 3), result.stderr)
                 if result.returncode != 0:
-                    self.assertIn("out of memory", self.assert_messages(result)[0])
+                    self.assert_says(result, "out of memory")
                 self.resumed(sphere)
                 self.assert_same(self.out, whole)
         print("statuses under limits of memory: " + ", ".join(f"{count} times {status}" for status, count in sorted(ends.items())))
@@ -174,8 +159,5 @@ if __name__ == "__main__":
     if "--long" in sys.argv:
         LONG = True
         sys.argv.remove("--long")
-    if "--every" in sys.argv:
-        at = sys.argv.index("--every")
-        EVERY = int(sys.argv[at + 1])
-        del sys.argv[at : at + 2]
+    EVERY = int(support.option("--every", EVERY))
     support.main()

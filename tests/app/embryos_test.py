@@ -1,38 +1,27 @@
-"""The two embryos of the paper, whole: what the built-in scenarios promise, symmetry, and a rest state that no step changes.
-
-Run: embryos_test.py PROGRAM
-"""
-import csv
+"""The two embryos of the paper, whole: what the built-in scenarios promise, symmetry, and a rest state that no step changes."""
+import functools
 import json
-import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-PROGRAM = ""
+import support
 
 
+@functools.cache
 def run(scenario, *overrides):
     """Runs a scenario; its summary and the last frame's rows of cells.csv. Fails unless plica is satisfied."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "out"
-        command = [PROGRAM, "run", scenario, "--out", str(out), "--quiet"]
-        for override in overrides:
-            command += ["--set", override]
-        subprocess.run(command, check=True)
-        summary = json.loads((out / "summary.json").read_text())
-        with open(out / "cells.csv", newline="") as file:
-            rows = list(csv.DictReader(file))
-    last = rows[-1]["time_s"]
-    return summary, [row for row in rows if row["time_s"] == last]
+        support.plica("run", scenario, "--out", out, "--quiet", *overrides, timeout=300).check_returncode()
+        rows = support.table(out / "cells.csv")
+        return json.loads((out / "summary.json").read_text()), [row for row in rows if row["time_s"] == rows[-1]["time_s"]]
 
 
 class Embryos(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.drosophila, cls.pill = run("drosophila")
-        cls.xenopus, cls.sphere = run("xenopus")
+    def setUp(self):
+        self.drosophila, self.pill = run("drosophila")
+        self.xenopus, self.sphere = run("xenopus")
 
     def test_drosophila_is_what_the_paper_prints(self):
         # The figures and margins of the paper's table; the scenario's own [expect] has been met, or run() had failed.
@@ -83,7 +72,7 @@ class Embryos(unittest.TestCase):
         print(f"{compared} cells compared with their mirror images")
 
     def test_half_an_embryo_is_shown_as_the_whole(self):
-        summary, half = run("drosophila", 'embryo.mirror=["x"]')
+        summary, half = run("drosophila", "--set", 'embryo.mirror=["x"]')
         self.assertEqual(summary["cells"], 756)
         self.assertEqual(len(half), len(self.pill))
         for column, size in (("x_um", 1), ("y_um", 1), ("z_um", 1), ("volume_um3", 1e4), ("apical_area_um2", 500), ("pressure_Pa", 200),
@@ -93,5 +82,4 @@ class Embryos(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = sys.argv.pop(1)
-    unittest.main()
+    support.main()

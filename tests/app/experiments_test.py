@@ -1,9 +1,6 @@
 """plica reproduce with a file of experiments: verdicts, the report, and the same table whatever is killed."""
-import csv
-import json
 import os
 import random
-import re
 import shutil
 import signal
 import subprocess
@@ -12,7 +9,7 @@ import tomllib
 from pathlib import Path
 
 import support
-from support import BLOCK, CommandLine, plica, start
+from support import BLOCK, CommandLine, ended, page_data, running, table
 
 COARSE = """\
 base = "drosophila"
@@ -73,22 +70,18 @@ class Experiments(CommandLine):
         self.write(DRAWS, "draws.csv")
         self.write(COARSE, "coarse.toml")
 
-    def reproduce(self, *arguments, status=0, out=None):
-        result = plica("reproduce", self.file, "--out", out or self.out, *arguments)
-        self.assertEqual(result.returncode, status, f"{result.args}\n{result.stdout}{result.stderr}")
-        return result
+    def reproduce(self, *arguments, **options):
+        return self.call("reproduce", self.file, "--out", self.out, *arguments, **options)
 
     def rows(self):
-        with open(self.out / "experiments.csv", newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
+        return table(self.out / "experiments.csv")
 
     def summaries(self):
         """When each run ended."""
         return {path: path.stat().st_mtime_ns for path in self.out.glob("runs/*/*/summary.json")}
 
     def outcomes(self):
-        with open(self.out / "outcomes.csv", newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
+        return table(self.out / "outcomes.csv")
 
     def test_the_tables_and_the_report(self):
         result = self.reproduce("--jobs", 2)
@@ -108,12 +101,11 @@ class Experiments(CommandLine):
                 self.assertEqual((row["own"], row["number"], row["judgement"]), ("", "", "hit"))
         # The same numbers as of plica run.
         alone = self.folder / "alone"
-        plica("run", self.folder / "coarse.toml", "--set", "time.end_min=0.2", "--set", "output.frame_every_min=0.1", "--set",
-              "contraction.apical.stiffness_nN_per_um=6", "--out", alone, "--quiet")
+        self.call("run", self.folder / "coarse.toml", "--set", "time.end_min=0.2", "--set", "output.frame_every_min=0.1", "--set",
+                  "contraction.apical.stiffness_nN_per_um=6", "--out", alone, "--quiet")
         self.assertEqual(float(rows[2]["own"]), self.summary(alone)["furrow_depth_um"])
         short = self.out / "runs/reference/draw-3"
-        self.assertEqual((short / "series.csv").read_bytes(), (alone / "series.csv").read_bytes())
-        self.assertEqual((short / "scenario.toml").read_bytes(), (alone / "scenario.toml").read_bytes())
+        self.same_csv(short, alone, "series.csv", "scenario.toml")
 
         table = self.outcomes()
         self.assertEqual([(row["role"], row["experiment"], row["outcome"], row["prediction"], row["verdict"]) for row in table],
@@ -124,7 +116,7 @@ class Experiments(CommandLine):
         self.assertEqual((table[3]["observed"], table[3]["source"]), ("It does.", "A book, 2020"))
         self.assertEqual(table[1]["criterion"], "furrow_depth_um minus that of reference, 0 or more")
         self.assertRegex(result.stdout, r"(?m)^miss +half, depth +0\.\d+  furrow_depth_um divided by that of reference, 0\.9 to 1\.1$")
-        data = json.loads(re.search(r'id="data">(.*?)</script>', (self.out / "report.html").read_text(), re.S)[1])
+        data = page_data(self.out / "report.html")
         self.assertEqual([run["name"] for run in data["runs"]], ["reference", "half", "long"])
         self.assertEqual([dict(zip(data["outcomes"]["columns"], row)) for row in data["outcomes"]["rows"]], table)
 
@@ -136,8 +128,7 @@ class Experiments(CommandLine):
         self.assertEqual(self.summaries(), before)
         # Not so a scenario.
         self.file.write_text(EXPERIMENTS.replace('"time.end_min" = 0.1', '"time.end_min" = 0.15'))
-        message = self.assert_messages(self.reproduce("--quiet", status=2))[0]
-        self.assertIn("runs/half/draw-1: was run with another scenario: time.end_s was 6 and is now 9", message)
+        self.assert_says(self.reproduce("--quiet", status=2), "runs/half/draw-1: was run with another scenario: time.end_s was 6 and is now 9")
         self.assertEqual(self.summaries(), before)
         shutil.rmtree(self.out / "runs/half")
         self.reproduce("--quiet")
@@ -152,23 +143,18 @@ class Experiments(CommandLine):
         shutil.rmtree(self.out)
         chance = random.Random(7)
         for _ in range(KILLS):
-            process = start("reproduce", self.file, "--out", self.out, "--jobs", 3, stdout=subprocess.DEVNULL)
-            support.count_case()
-            time.sleep(chance.uniform(0.1, 0.6))
-            with_grace = chance.choice([True, False])
-            process.send_signal(signal.SIGINT if with_grace else signal.SIGKILL)
-            _, errors = process.communicate(timeout=60)
-            if process.returncode == 130:
-                self.assertIn("interrupted; to continue, repeat the command", errors)
+            with running("reproduce", self.file, "--out", self.out, "--jobs", 3, stdout=subprocess.DEVNULL) as process:
+                time.sleep(chance.uniform(0.1, 0.6))
+                process.send_signal(chance.choice([signal.SIGINT, signal.SIGKILL]))
+                result = ended(process)
+            if result.returncode == 130:
+                self.assertIn("interrupted; to continue, repeat the command", result.stderr)
                 self.assertLessEqual({row["status"] for row in self.rows()}, {"end_time", "not_run"})
             time.sleep(0.2)  # its workers end with it, and let go of their directories
         self.reproduce("--jobs", 2, "--quiet")
         self.assertEqual((self.out / "experiments.csv").read_bytes(), truth)
         self.assertEqual((self.out / "outcomes.csv").read_bytes(), table)
         self.assertFalse((self.out / "unfinished").exists())
-        self.assert_whole_frames()
-
-    def assert_whole_frames(self):
         for run in self.out.glob("runs/*/draw-1"):
             self.assert_whole(run)
 
@@ -213,9 +199,7 @@ hit = [0.4, 0.6]
 
     def test_what_cannot_be_done_says_so_and_leaves_nothing(self):
         for what, words in (("livign", "not a file or built-in experiments"), (self.folder, "Is a directory")):
-            result = plica("reproduce", what, "--out", self.out)
-            self.assertIn(result.returncode, (2, 4))
-            self.assertIn(words, self.assert_messages(result)[0])
+            self.assert_says(self.call("reproduce", what, "--out", self.out, status=(2, 4)), words)
         self.write("contraction.apical.stiffness_nN_per_um\n4\n-5\n", "draws.csv")
         message = self.assert_messages(self.reproduce(status=2))[0]
         self.assertRegex(message, r"draws.csv:3: column 1 \(contraction.apical.stiffness_nN_per_um\): -5 is out of range; set ")
@@ -224,8 +208,7 @@ hit = [0.4, 0.6]
         self.out.mkdir()
         (self.out / "mine.txt").write_text("of somebody")
         for more in ((), ("--overwrite",)):
-            message = self.assert_messages(self.reproduce(*more, status=2))[0]
-            self.assertIn("contains no experiments; give another --out", message)
+            self.assert_says(self.reproduce(*more, status=2), "contains no experiments; give another --out")
         self.assertEqual([path.name for path in self.out.iterdir()], ["mine.txt"])
 
     def test_claims_are_reproduced_in_every_reading_or_in_the_first(self):
@@ -251,13 +234,9 @@ hit = [{1}]
     def test_the_living_embryo_has_one_frozen_set(self):
         """Its values stand in two scenarios, too, which people read and change."""
         scenarios = Path(__file__).resolve().parents[2] / "scenarios"
-        with (scenarios / "living/draws.csv").open(newline="") as stream:
-            frozen = next(csv.DictReader(stream))
-        for file, not_in in (("living/embryo.toml", []),
-                             ("drosophila-atlas-living.toml", ["cortex.apical.profile.sigma_cells"])):
-            with (scenarios / file).open("rb") as stream:
-                scenario = tomllib.load(stream)
-            for key, value in frozen.items():
+        for file, not_in in (("living/embryo.toml", []), ("drosophila-atlas-living.toml", ["cortex.apical.profile.sigma_cells"])):
+            scenario = tomllib.loads((scenarios / file).read_text())
+            for key, value in support.table(scenarios / "living/draws.csv")[0].items():
                 table = scenario
                 for part in key.split("."):
                     table = table.get(part, {})

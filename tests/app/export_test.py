@@ -1,11 +1,10 @@
 """`plica export` and what `plica mesh` shows: polygons read back with VTK's reader, tables, arrays, pictures."""
-import csv
 import math
 
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
 import support
-from support import BLOCK, CommandLine, plica
+from support import BLOCK, CommandLine
 
 EGG = """\
 format = 1
@@ -43,26 +42,20 @@ def read(reader, path):
 
 
 def numbers(path):
-    with open(path, newline="") as file:
-        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+    return [{key: float(value) for key, value in row.items()} for row in support.table(path)]
 
 
 class Export(CommandLine):
     def path(self, name):
         return self.folder / name
 
-    def expect(self, result, status, stdout="", stderr=""):
-        self.assertEqual(result.returncode, status, result.stderr)
-        self.assertIn(stdout, result.stdout)
-        self.assertIn(stderr, result.stderr)
-
     def run_of(self, scenario):
-        self.expect(plica("run", self.write(scenario), "--out", self.path("run"), "--quiet"), 0)
-        return self.path("run")
+        self.run_scenario(scenario, "--quiet")
+        return self.out
 
     def test_a_surface_reads_back(self):
         run = self.run_of(EGG)
-        self.expect(plica("export", run, "--out", self.path("cells.vtp")), 0, stdout="150 polygons, 296 vertices at 2 s")
+        self.assertIn("150 polygons, 296 vertices at 2 s", self.call("export", run, "--out", self.path("cells.vtp")).stdout)
         surface = read(vtkXMLPolyDataReader(), self.path("cells.vtp"))
         self.assertEqual((surface.GetNumberOfPolys(), surface.GetNumberOfPoints()), (150, 296))
         self.assertEqual(surface.GetFieldData().GetArray("TimeValue").GetValue(0), 2)
@@ -76,8 +69,7 @@ class Export(CommandLine):
 
     def test_tables_are_those_of_the_surface(self):
         run = self.run_of(EGG)
-        self.expect(plica("export", run, "--out", self.path("tables"), "--time", "1s", "--side", "basal"), 0,
-                    stdout="at 1 s")
+        self.assertIn("at 1 s", self.call("export", run, "--out", self.path("tables"), "--time", "1s", "--side", "basal").stdout)
         vertices, edges, faces = (numbers(self.path("tables") / f"{name}.csv") for name in ("vert", "edge", "face"))
         self.assertEqual((len(vertices), len(edges), len(faces)), (296, 888, 150))
         self.assertEqual(list(edges[0]), ["edge", "srce", "trgt", "face", "opposite", "dx", "dy", "dz", "length"])
@@ -94,16 +86,16 @@ class Export(CommandLine):
                 ((run, "--out", out, "--time", "9min"), 2, "--time 9min: the run has snapshots from 0 s to 0.5 s"),
                 ((run, "--out", out, "--side", "left"), 2, "--side"),
                 ((run,), 2, "--out")]:
-            self.expect(plica("export", *arguments), status, stderr=said)
+            self.assertIn(said, self.call("export", *arguments, status=status).stderr)
         self.assertFalse(out.exists())
         out.write_text("mine")
-        self.expect(plica("export", run, "--out", out), 4, stderr="already exists")
+        self.assertIn("already exists", self.call("export", run, "--out", out, status=4).stderr)
         self.assertEqual(out.read_text(), "mine")
-        self.expect(plica("export", run, "--out", out, "--overwrite"), 0)
+        self.call("export", run, "--out", out, "--overwrite")
 
     def test_meshes_have_what_is_said_of_cells(self):
         scenario = self.write(EGG)
-        self.expect(plica("mesh", scenario, "--out", self.path("rest.vtu")), 0)
+        self.call("mesh", scenario, "--out", self.path("rest.vtu"))
         grid = read(vtkXMLUnstructuredGridReader(), self.path("rest.vtu"))
         data = grid.GetCellData()
         strength, modulus, rows, beside = (
@@ -116,11 +108,11 @@ class Export(CommandLine):
         self.assertEqual(set(modulus), {1000, 4000})
         self.assertFalse(any(a and b for a, b in zip(rows, beside)))
         self.assertIsNotNone(data.GetArray("pulse_phase_contraction.apical"))
-        self.expect(plica("mesh", scenario, "--out", self.path("rest.png"), "--colour", "strength_contraction.apica"), 2,
-                    stderr="use strength_contraction.apical (nearest match); available: region, ")
-        self.expect(plica("mesh", scenario, "--out", self.path("rest.jpg")), 2, stderr="must end in .vtu, or in .png")
-        self.expect(plica("mesh", scenario, "--out", self.path("rest.png"), "--color", "strength_contraction.apical",
-                          "--view", "ventral,cross-section"), 0)
+        for file, colour, said in (("rest.png", "apica", "use strength_contraction.apical (nearest match); available: region, "),
+                                   ("rest.jpg", "apical", "must end in .vtu, or in .png")):
+            refused = self.call("mesh", scenario, "--out", self.path(file), "--colour", f"strength_contraction.{colour}", status=2)
+            self.assertIn(said, refused.stderr)
+        self.call("mesh", scenario, "--out", self.path("rest.png"), "--color", "strength_contraction.apical", "--view", "ventral,cross-section")
         self.assertEqual(self.path("rest.png").read_bytes()[:4], b"\x89PNG")
 
 

@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 import support
-from support import BLOCK, CHECKPOINTS, RESULTS, SPHERE, CommandLine, plica, start, table, tree
+from support import BLOCK, CHECKPOINTS, RESULTS, SPHERE, CommandLine, ended, rows_in, running, table, tree
 
 
 class Files(CommandLine):
@@ -18,7 +18,7 @@ class Files(CommandLine):
         self.run_scenario(BLOCK)
         before = tree(self.out)
         result = self.run_scenario(SPHERE, status=4)
-        self.assertIn("--overwrite", self.assert_messages(result)[0])
+        self.assert_says(result, "--overwrite")
         self.assertEqual(tree(self.out), before)
 
     def test_overwrite_keeps_the_results_when_the_scenario_is_bad(self):
@@ -47,17 +47,16 @@ class Files(CommandLine):
         file = self.write("mine", "file")
         for out in (file, file / "below", Path("/proc/plica"), Path("/dev/null")):
             with self.subTest(out):
-                result = self.run_scenario(BLOCK, out=out, status=4)
-                self.assertIn(str(out), self.assert_messages(result)[0])
+                self.assert_says(self.run_scenario(BLOCK, out=out, status=4), str(out))
         self.assertEqual(file.read_text(), "mine")
         mesh = self.folder / "rest.vtu"
         scenario = self.write(BLOCK)
-        self.assertEqual(plica("mesh", scenario, "--out", file / "rest.vtu").returncode, 4)
-        self.assertEqual(plica("mesh", scenario, "--out", mesh).returncode, 0)
+        self.call("mesh", scenario, "--out", file / "rest.vtu", status=4)
+        self.call("mesh", scenario, "--out", mesh)
         before = mesh.read_bytes()
-        self.assertEqual(plica("mesh", scenario, "--set", "embryo.length_um=70", "--out", mesh).returncode, 4)
+        self.call("mesh", scenario, "--set", "embryo.length_um=70", "--out", mesh, status=4)
         self.assertEqual(mesh.read_bytes(), before)
-        self.assertEqual(plica("mesh", scenario, "--set", "embryo.length_um=70", "--out", mesh, "--overwrite").returncode, 0)
+        self.call("mesh", scenario, "--set", "embryo.length_um=70", "--out", mesh, "--overwrite")
         self.assertNotEqual(mesh.read_bytes(), before)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "needs /dev/full")
@@ -65,7 +64,7 @@ class Files(CommandLine):
         scenario = self.write(BLOCK)
         for arguments in (["check", scenario], ["scenarios"]):
             with self.subTest(arguments), open("/dev/full", "w") as full:
-                self.assertEqual(plica(*arguments, stdout=full).returncode, 4)
+                self.call(*arguments, stdout=full, status=4)
 
     def small_disk(self, kilobytes):
         disk = self.folder / f"disk{kilobytes}"
@@ -83,8 +82,7 @@ class Files(CommandLine):
                 disk = self.small_disk(kilobytes)
                 if disk is None:
                     self.skipTest("may not mount a small disk here; the file size limit is tried all the same")
-                result = self.run_scenario(BLOCK, *run, out=disk / "out", status=4)
-                self.assertIn("No space left", self.assert_messages(result)[0])
+                self.assert_says(self.run_scenario(BLOCK, *run, out=disk / "out", status=4), "No space left")
                 self.assert_whole(disk / "out")
 
     def test_a_file_that_may_not_grow_is_cut_to_whole_rows(self):
@@ -97,7 +95,7 @@ class Files(CommandLine):
         result = subprocess.run([*limit, *map(str, command)], capture_output=True, text=True, timeout=60,
                                 env={**os.environ, "TMPDIR": "/nonexistent"})
         self.assertEqual(result.returncode, 4, result.stderr)
-        self.assertIn("File too large", self.assert_messages(result)[0])
+        self.assert_says(result, "File too large")
         self.assert_whole(self.out)
 
 
@@ -140,19 +138,14 @@ class Endings(CommandLine):
                 self.assert_whole(out)
 
     def test_an_interrupted_step_is_finished_if_that_takes_no_longer_than_3_s(self):
-        support.count_case()
-        process = start("run", "drosophila", "--set", "embryo.elements_per_cell=[2,2,2]", "--out", self.out)
-        try:
+        with running("run", "drosophila", "--set", "embryo.elements_per_cell=[2,2,2]", "--out", self.out) as process:
             series = self.out / "series.csv"
             # Its header, the embryo at rest.
             while process.poll() is None and (not series.exists() or len(series.read_text().splitlines()) < 2):
                 time.sleep(0.01)
             process.send_signal(signal.SIGINT)
             signalled = time.monotonic()
-            process.communicate(timeout=60)
-        finally:
-            process.kill()
-            process.communicate()
+            ended(process)
         self.assertEqual(process.returncode, 130)
         if self.summary(self.out)["steps"] == 0:
             self.assertGreater(time.monotonic() - signalled, 3, "the step was given up at once")
@@ -160,21 +153,13 @@ class Endings(CommandLine):
 
     def test_an_interrupted_step_is_given_up_within_seconds(self):
         # An embryo so thin that Newton's method struggles for minutes within one step: the signal must be heard there.
-        support.count_case()
         text = "[embryo]\ncell_height_um = 0.001\n[time]\nend_s = 1e9\n[stop]\nat_equilibrium = false\n"
-        process = start("run", self.write(text), "--out", self.out)
-        try:
+        with running("run", self.write(text), "--out", self.out) as process:
             time.sleep(2)
             if process.poll() is not None:
                 self.skipTest("the run was over before the signal")
             process.send_signal(signal.SIGTERM)
-            started = time.monotonic()
-            process.communicate(timeout=10)
-        except subprocess.TimeoutExpired:
-            self.fail(f"still running {time.monotonic() - started:.0f} s after SIGTERM")
-        finally:
-            process.kill()
-            process.communicate()
+            ended(process, 10)
         self.assertEqual(process.returncode, 143)
         self.assert_whole(self.out)
 
@@ -189,22 +174,15 @@ class Endings(CommandLine):
 
     def stopped_run(self, number, name):
         """A run without end, signalled once its series has a few rows; they are readable while it goes on."""
-        support.count_case()
         out = self.folder / name
-        process = start("run", self.write(BLOCK), "--out", out, "--set", "time.end_s=1e9", "--quiet")
-        try:
+        with running("run", self.write(BLOCK), "--out", out, "--set", "time.end_s=1e9", "--quiet") as process:
             deadline = time.monotonic() + 30
-            series = out / "series.csv"
-            while time.monotonic() < deadline and not (series.exists() and series.read_bytes().count(b"\n") > 5):
+            while time.monotonic() < deadline and rows_in(out) < 4:
                 self.assertIsNone(process.poll())
                 time.sleep(0.02)
-            self.assertGreater(series.read_bytes().count(b"\n"), 5)
+            self.assertGreater(rows_in(out), 3)
             process.send_signal(number)
-            process.stdout_text, process.stderr_text = process.communicate(timeout=30)
-        finally:
-            process.kill()
-            process.communicate()
-        return subprocess.CompletedProcess(process.args, process.returncode, process.stdout_text, process.stderr_text), out
+            return ended(process, 30), out
 
 
 if __name__ == "__main__":

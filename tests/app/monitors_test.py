@@ -2,7 +2,7 @@
 import math
 
 import support
-from support import BLOCK, CommandLine, plica, table
+from support import BLOCK, CommandLine, table
 
 SOFT = BLOCK.replace("end_s = 0.5\nstep_s = 0.1", "end_s = 5\nstep_s = 0.5").replace("frame_every_s = 0.2", "frame_every_s = 1")
 MONITORS = """\
@@ -50,8 +50,8 @@ class Monitors(CommandLine):
         self.assertIsNone(summary["stopped_by"])
         self.assert_whole(self.out)
         again = self.folder / "again"
-        self.assertEqual(plica("run", self.out / "scenario.toml", "--out", again).returncode, 0)
-        self.assertEqual((again / "series.csv").read_bytes(), (self.out / "series.csv").read_bytes())
+        self.call("run", self.out / "scenario.toml", "--out", again)
+        self.same_csv(again, self.out, "series.csv")
 
     def test_a_monitor_may_be_read_at_a_time(self):
         def text(keys):
@@ -109,7 +109,7 @@ class Monitors(CommandLine):
 
     def test_distance_to_a_reference_surface(self):
         mesh = self.folder / "rest.vtu"
-        self.assertEqual(plica("mesh", self.write(BLOCK), "--out", mesh).returncode, 0)
+        self.call("mesh", self.write(BLOCK), "--out", mesh)
         self.run_scenario(BLOCK + '[monitor.skin]\nquantity = "surface_distance"\nreference = "rest.vtu"\nover = "max"\nface = "apical"\n')
         distances = [float(row["skin.surface_distance_um"]) for row in table(self.out / "series.csv")]
         self.assertLess(distances[0], 1e-9)
@@ -138,8 +138,8 @@ class Monitors(CommandLine):
                 self.assert_refused(text, part, line=3, key="monitor.a.reference")
         self.run_scenario(BLOCK)
         before = support.tree(self.out)
-        result = self.run_scenario(BLOCK + f'[monitor.a]\nquantity = "deviation"\nreference = "{self.out}"\n', "--overwrite", status=2)
-        self.assertIn("reference", self.assert_messages(result)[0])
+        own = f'[monitor.a]\nquantity = "deviation"\nreference = "{self.out}"\n'
+        self.assert_says(self.run_scenario(BLOCK + own, "--overwrite", status=2), "reference")
         self.assertEqual(support.tree(self.out), before)
 
     def test_empty_regions_and_sides_name_their_line(self):

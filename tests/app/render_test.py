@@ -1,17 +1,17 @@
 """`plica render`: what it writes, what it refuses, and what it leaves behind."""
 import math
 import os
-import re
 import shutil
 import signal
 import struct
+import subprocess
 import time
 
 from vtkmodules.vtkIOImage import vtkPNGReader
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 import support
-from support import BLOCK, SPHERE, CommandLine, plica
+from support import BLOCK, SPHERE, CommandLine
 
 VIEWS = "antero-ventral ventral side cross-section sagittal-section apical".split()
 
@@ -49,37 +49,20 @@ def shift(mesh, moved, distance_um):
 
 def servers(ancestor=None):
     """Process ids of the X servers that run: all, or those that a process has started, itself or through others."""
-    names, states, parents = {}, {}, {}
-    for process in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            with open(f"/proc/{process}/stat", encoding="utf-8") as stat:
-                name, state, parent = re.match(r"\d+ \((.*)\) (\w) (\d+)", stat.read()).groups()
-        except OSError:
-            continue
-        names[int(process)], states[int(process)], parents[int(process)] = name, state, int(parent)
+    lines = subprocess.run(["ps", "-eo", "pid=,ppid=,stat=,comm="], capture_output=True, text=True, check=True).stdout.splitlines()
+    rows = [line.split(None, 3) for line in lines]
+    parents = {int(process): int(parent) for process, parent, _, _ in rows}
 
     def descends(process):
-        while process in parents:
-            if process == ancestor:
-                return True
-            process = parents[process]
-        return False
+        return process == ancestor or (process in parents and descends(parents[process]))
 
-    running = {process for process, name in names.items() if name == "Xvfb" and states[process] != "Z"}
+    running = {int(process) for process, _, state, name in rows if name == "Xvfb" and state[0] != "Z"}
     return running if ancestor is None else set(filter(descends, running))
 
 
 def processes_about(words):
     """Process ids of what has these words on its command line."""
-    found = []
-    for process in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            with open(f"/proc/{process}/cmdline", "rb") as line:
-                if words.encode() in line.read() and int(process) != os.getpid():
-                    found.append(int(process))
-        except OSError:
-            continue
-    return found
+    return subprocess.run(["pgrep", "--full", words], capture_output=True, text=True, check=False).stdout.split()
 
 
 class Render(CommandLine):
@@ -89,9 +72,7 @@ class Render(CommandLine):
         self.run_scenario(SPHERE + "[output]\nframe_every_s = 0.1\n", "--quiet")
 
     def render(self, *arguments, status=0, **options):
-        result = plica("render", self.out, "--out", self.picture, *arguments, **options)
-        self.assertEqual(result.returncode, status, result.stdout + result.stderr)
-        return result
+        return self.call("render", self.out, "--out", self.picture, *arguments, status=status, **options)
 
     def refused(self, status, *arguments, **options):
         """The one message of a call that fails and writes nothing."""
@@ -117,7 +98,7 @@ class Render(CommandLine):
 
     def test_a_mesh_far_from_the_origin_is_in_the_middle(self):
         at_origin, far = self.folder / "at_origin.vtu", self.folder / "far.vtu"
-        self.assertEqual(plica("mesh", self.write(SPHERE), "--out", at_origin).returncode, 0)
+        self.call("mesh", self.write(SPHERE), "--out", at_origin)
         shift(at_origin, far, 1e5)
         pictures = []
         for mesh in (at_origin, far):
@@ -125,8 +106,7 @@ class Render(CommandLine):
             self.run_scenario(
                 f'[embryo]\nshape = "file"\nfile = "{mesh.name}"\n[vitelline]\nenabled = false\n[contraction.all]\n'
                 'region = "all"\nstiffness_nN_per_um = 8\n[time]\nend_s = 0.3\n', "--quiet", out=out)
-            result = plica("render", out, "--out", self.picture, "--size", "400x300", "--view", "ventral", "--overwrite")
-            self.assertEqual(result.returncode, 0, result.stderr)
+            self.call("render", out, "--out", self.picture, "--size", "400x300", "--view", "ventral", "--overwrite")
             pictures.append([pixel for row in pixels_of(self.picture) for pixel in row])
         drawn = [sum(pixel != (255, 255, 255) for pixel in picture) for picture in pictures]
         self.assertGreater(drawn[0], 400 * 300 / 5)
@@ -216,21 +196,14 @@ class Render(CommandLine):
 
     def test_a_directory_without_frames_is_refused(self):
         for directory, part in ((self.folder, "frames.pvd"), (self.folder / "nowhere", "directory does not exist")):
-            result = plica("render", directory, "--out", self.picture)
-            self.assertEqual(result.returncode, 4)
-            self.assertIn(part, self.assert_messages(result)[0])
-        result = plica("render", self.out, "--out", self.folder / "picture.jpg")
-        self.assertEqual(result.returncode, 2)
-        self.assertIn(".png", self.assert_messages(result)[0])
-        for movie in ("fold.gif", "fold.mp4"):
-            result = plica("render", self.out, "--out", movie)
-            self.assertEqual(result.returncode, 2)
-            self.assertIn(f'plica.movie("{self.out}", "{movie}")', self.assert_messages(result)[0])
+            self.assert_says(self.call("render", directory, "--out", self.picture, status=4), part)
+        for file, part in (("picture.jpg", ".png"), ("fold.gif", f'plica.movie("{self.out}", "fold.gif")'),
+                           ("fold.mp4", f'plica.movie("{self.out}", "fold.mp4")')):
+            self.assert_says(self.call("render", self.out, "--out", file, status=2), part)
 
     def test_a_file_that_is_there_is_kept(self):
         self.picture.write_text("mine")
-        message = self.assert_messages(self.render(status=4))[0]
-        self.assertIn("--overwrite", message)
+        self.assert_says(self.render(status=4), "--overwrite")
         self.assertEqual(self.picture.read_text(), "mine")
 
     def test_without_a_display_it_says_what_to_do(self):
@@ -249,26 +222,24 @@ class Render(CommandLine):
         self.assertIn("4 of 4 pictures", result.stderr)
         self.assertRegex(result.stdout, r"ffmpeg .*picture_%05d.png' -frames:v 4 .*pad")
         self.assertEqual(len({(self.folder / name).read_bytes() for name in frames}), 4)
-        self.assertIn("picture_00000.png", self.assert_messages(self.render("--movie", status=4))[0])
+        self.assert_says(self.render("--movie", status=4), "picture_00000.png")
         if shutil.which("ffmpeg") is None:
             self.assertIn("pip install imageio-ffmpeg", result.stdout)
 
     def test_no_end_leaves_anything_running(self):
         for how, status in ((None, 0), (signal.SIGTERM, 143), (signal.SIGINT, 130), (signal.SIGKILL, -9)):
             size = "2000x2000" if how else "200x200"  # long enough to be met at work
-            process = support.start("render", self.out, "--out", self.picture, "--movie", "--size", size, "--overwrite")
-            support.count_case()
-            for _ in range(200):
-                own = servers(process.pid)  # other tests have theirs
-                if own:
-                    break
-                time.sleep(0.02)
-            self.assertTrue(own, "no X server was started")
-            if how:
-                time.sleep(0.5)  # until it draws
-                process.send_signal(how)
-            process.communicate(timeout=60)
-            self.assertEqual(process.returncode, status)
+            with support.running("render", self.out, "--out", self.picture, "--movie", "--size", size, "--overwrite") as process:
+                for _ in range(200):
+                    own = servers(process.pid)  # other tests have theirs
+                    if own:
+                        break
+                    time.sleep(0.02)
+                self.assertTrue(own, "no X server was started")
+                if how:
+                    time.sleep(0.5)  # until it draws
+                    process.send_signal(how)
+                self.assertEqual(support.ended(process).returncode, status)
             for _ in range(200):
                 if not servers() & own and not processes_about(str(self.folder)):
                     break

@@ -1,7 +1,5 @@
 """`plica report` from outside: what it writes, what it refuses. The page itself is tested in a browser (viewer/tests)."""
 import base64
-import csv
-import json
 import math
 import re
 import shutil
@@ -9,26 +7,22 @@ import struct
 import zlib
 
 import support
-from support import BLOCK, CommandLine, plica
+from support import BLOCK, CommandLine, page_data, table
 
 
-class Report(CommandLine):
+class Reports(CommandLine):
+    def report(self, *arguments, **options):
+        return self.call("report", *arguments, **options)
+
+
+class Report(Reports):
     def setUp(self):
         super().setUp()
         self.run_scenario(BLOCK)
 
-    def report(self, *arguments, status=0):
-        result = plica("report", *arguments)
-        self.assertEqual(result.returncode, status, result.stdout + result.stderr)
-        return result
-
-    def data(self, file):
-        text = file.read_text()
-        return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S)[1])
-
     def test_a_run_leaves_its_page_and_report_makes_it_anew(self):
         page = self.out / "report.html"
-        data = self.data(page)
+        data = page_data(page)
         self.assertEqual([run["name"] for run in data["runs"]], ["out"])
         self.assertEqual(data["runs"][0]["series"], (self.out / "series.csv").read_text())
         self.assertEqual(data["runs"][0]["scenario"], (self.out / "scenario.toml").read_text())
@@ -44,19 +38,19 @@ class Report(CommandLine):
         self.assertIn("--out: missing", self.report(self.out, other, status=2).stderr)
         both = self.folder / "both.html"
         self.report(self.out, other, "--out", both)
-        self.assertEqual([run["name"] for run in self.data(both)["runs"]], ["out", "other"])
+        self.assertEqual([run["name"] for run in page_data(both)["runs"]], ["out", "other"])
         self.assertIn("already exists", self.report(self.out, "--out", both, status=4).stderr)
         self.report(self.out, "--out", both, "--overwrite")
-        self.assertEqual(len(self.data(both)["runs"]), 1)
+        self.assertEqual(len(page_data(both)["runs"]), 1)
         self.assertIn(".html", self.report(self.out, "--out", self.folder / "page.pdf", status=2).stderr)
 
     def test_an_unfinished_run_and_one_without_frames_have_a_page(self):
         (self.out / "summary.json").unlink()
         self.report(self.out)
-        self.assertIsNone(self.data(self.out / "report.html")["runs"][0]["summary"])
+        self.assertIsNone(page_data(self.out / "report.html")["runs"][0]["summary"])
         (self.out / "frames.pvd").unlink()
         self.report(self.out)
-        self.assertEqual(self.data(self.out / "report.html")["runs"][0]["topologies"], [])
+        self.assertEqual(page_data(self.out / "report.html")["runs"][0]["topologies"], [])
 
     def test_what_is_no_run_or_damaged_is_refused(self):
         empty = self.folder / "empty"
@@ -90,25 +84,18 @@ each = "summary"
 """
 
 
-class StudyReport(CommandLine):
+class StudyReport(Reports):
     """The page of a study: its columns as they are packed."""
 
     def setUp(self):
         super().setUp()
-        self.out = self.folder / "out"
-        result = plica("study", self.write(STUDY), "--out", self.out, "--jobs", 1)
-        self.assertEqual(result.returncode, 0, result.stderr)
+        result = self.call("study", self.write(STUDY), "--out", self.out, "--jobs", 1)
         self.assertIn("out/report.html", result.stdout)
 
-    def report(self, *arguments, status=0):
-        result = plica("report", *arguments)
-        self.assertEqual(result.returncode, status, result.stdout + result.stderr)
-        return result
-
     def columns(self, page=None):
-        text = (page or self.out / "report.html").read_text()
-        data = json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S)[1])
-        packed = zlib.decompress(base64.b64decode(re.search(r'id="rows">(.*?)</script>', text, re.S)[1]))
+        page = page or self.out / "report.html"
+        data = page_data(page)
+        packed = zlib.decompress(base64.b64decode(re.search(r'id="rows">(.*?)</script>', page.read_text(), re.S)[1]))
         arrays = {}
         for entry in data["arrays"]:
             planes = [packed[entry["offset"] + b * entry["count"]:][:entry["count"]] for b in range(4)]
@@ -127,14 +114,10 @@ class StudyReport(CommandLine):
                 columns[column["name"]] = ["" if math.isnan(value) else value for value in doubles]
         return data, columns
 
-    def rows(self):
-        with open(self.out / "runs.csv", newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
-
     def test_the_page_holds_the_rows(self):
         data, columns = self.columns()
         self.assertEqual((data["design"], data["scenario_argument"], data["set"], data["runs"]), ("grid", "drosophila", ["time.end_min=0.05"], 8))
-        rows, compared = self.rows(), 0
+        rows, compared = table(self.out / "runs.csv"), 0
         for name in rows[0]:
             for row, value in zip(rows, columns[name]):
                 told = row[name]

@@ -1,24 +1,22 @@
 """The paper's reproduction: `plica reproduce paper`, its verdicts as published, and what the page of docs says of them."""
-import csv
 import re
 import tomllib
 from collections import Counter
 from pathlib import Path
 
 import support
-from support import CommandLine, plica
+from support import CommandLine, table
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
 class Reproduce(CommandLine):
     def published(self):
-        with (ROOT / "docs/science/reproduction.csv").open(newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
+        return table(ROOT / "docs/science/reproduction.csv")
 
     def test_the_page_counts_the_claims_of_the_file(self):
-        with (ROOT / "scenarios/paper/experiments.toml").open("rb") as file:
-            claims = [outcome for experiment in tomllib.load(file)["experiment"].values() for outcome in experiment["outcome"].values()]
+        experiments = tomllib.loads((ROOT / "scenarios/paper/experiments.toml").read_text())["experiment"]
+        claims = [outcome for experiment in experiments.values() for outcome in experiment["outcome"].values()]
         verdicts = Counter(row["verdict"] for row in self.published())
         self.assertEqual(sorted(row["claim"] for row in self.published()), sorted(claim["question"] for claim in claims))
         page = (ROOT / "docs/science/reproduction.md").read_text()
@@ -26,10 +24,8 @@ class Reproduce(CommandLine):
         self.assertIn("Of {} claims, {} are reproduced, {} under this reading, and {} are not.".format(*counts), page)
 
     def test_a_quick_reproduction_has_the_published_numbers(self):
-        result = plica("reproduce", "--out", self.out, "--quick", timeout=280)
-        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        with (self.out / "outcomes.csv").open(newline="", encoding="utf-8") as file:
-            rows = {(row["experiment"], row["outcome"]): row for row in csv.DictReader(file)}
+        result = self.call("reproduce", "--out", self.out, "--quick", timeout=280)
+        rows = {(row["experiment"], row["outcome"]): row for row in table(self.out / "outcomes.csv")}
         published = {(row["experiment"], row["outcome"]): row for row in self.published()}
         self.assertEqual(rows.keys(), published.keys())
         for name, row in rows.items():

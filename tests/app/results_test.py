@@ -4,7 +4,7 @@ from pathlib import Path
 
 import support
 from support import BLOCK, CELL_DATA, CELLS, MIDLINE, POINT_DATA, RESULTS, SECTION, SERIES, SPHERE, SUMMARY
-from support import CommandLine, plica, read_vtu, table, tree
+from support import CommandLine, block, read_vtu, table
 
 
 class Outcomes(CommandLine):
@@ -50,7 +50,7 @@ class Outcomes(CommandLine):
     def test_rest_from_the_first_step_on_is_no_success_in_silence(self):
         result = self.run_scenario(BLOCK, "--set", "stop.at_equilibrium=true", "--set", "stop.equilibrium_speed_um_per_min=1e9")
         self.assertIn("after 1 step in", result.stdout)
-        self.assertIn("stop.equilibrium_speed_um_per_min (1e+09)", self.assert_messages(result)[0])
+        self.assert_says(result, "stop.equilibrium_speed_um_per_min (1e+09)")
         self.assertEqual(self.summary()["status"], "equilibrium")
 
     def test_every_column_is_in_the_documentation(self):
@@ -88,19 +88,11 @@ class Outcomes(CommandLine):
         self.run_scenario(text, "--set", "time.end_s=0.3")
         self.assertEqual((self.out / "scenario.input.toml").read_text(), text)
         again = self.folder / "again"
-        self.assertEqual(plica("run", self.out / "scenario.toml", "--out", again).returncode, 0)
-        self.assertEqual((again / "series.csv").read_bytes(), (self.out / "series.csv").read_bytes())
+        self.call("run", self.out / "scenario.toml", "--out", again)
+        self.same_csv(again, self.out, "series.csv")
 
     def test_runs_are_repeatable_to_the_byte_with_any_number_of_threads(self):
-        outs = [self.folder / name for name in ("once", "again", "one", "two")]
-        for out, threads in zip(outs, ([], [], ["--threads", "1"], ["--threads", "2"])):
-            self.run_scenario(SPHERE, *threads, out=out)
-        expected = tree(outs[0])
-        for out in outs[1:]:
-            for name, content in tree(out).items():
-                if name not in support.WITH_WALL_TIMES:
-                    with self.subTest(f"{out.name}/{name}"):
-                        self.assertEqual(content, expected[name])
+        self.assert_repeatable(SPHERE, [], [], ["--threads", "1"], ["--threads", "2"])
 
     def test_a_missed_expectation_is_status_1_and_says_by_how_much(self):
         text = BLOCK + "[expect]\nmin_apical_area_ratio = { value = 0.5, within_percent = 1 }\n"
@@ -117,8 +109,7 @@ class Outcomes(CommandLine):
         self.run_scenario(BLOCK + "[expect]\nequilibrium_time_s = { value = 1, within = 1e9 }\n", "--overwrite", status=1)
 
     def test_each_warning_of_a_run_is_in_its_summary(self):
-        text = ('[embryo]\nshape = "block"\nlength_um = 10\nwidth_um = 60\ncell_height_um = 12\ncells = [2, 12, 1]\n'
-                '[contraction.apical]\nregion = "all"\nstiffness_nN_per_um = 1.5\nacross_ratio = 1\n[time]\nend_min = 8\n')
+        text = (block(10, 60, 12, [2, 12, 1]) + '[contraction.apical]\nregion = "all"\nstiffness_nN_per_um = 1.5\nacross_ratio = 1\n[time]\nend_min = 8\n')
         for topic, *more in (("bending",), ("equilibrium", "--set", "stop.equilibrium_speed_um_per_min=1e9")):
             stderr = self.run_scenario(text, "--quiet", "--overwrite", *more).stderr
             lines = [line.removeprefix("warning: ") for line in stderr.splitlines() if line.startswith("warning: ")]
@@ -134,7 +125,7 @@ class Outcomes(CommandLine):
         title = "x" * 100000 + ' \\"quoted\\" \\u001b[31m ü <b>&amp;'
         self.run_scenario(BLOCK.replace("A small block", title))
         self.assertEqual(self.summary()["title"], title.replace('\\"', '"').replace("\\u001b", "\x1b"))
-        self.assertEqual(plica("check", self.out / "scenario.toml").returncode, 0)
+        self.call("check", self.out / "scenario.toml")
 
 
 if __name__ == "__main__":

@@ -7,15 +7,13 @@ import random
 import re
 import shutil
 import signal
-import subprocess
 import sys
 import time
-import unittest
 from pathlib import Path
 
 import support
-from resuming import DIVIDING, LOST, Resuming, rows_in
-from support import BLOCK, CHECKPOINTS, SPHERE, plica, start, tree
+from resuming import DIVIDING, LOST, Resuming
+from support import BLOCK, CHECKPOINTS, SPHERE, rows_in, running, tree
 
 KILLS, SEED, KILLS_IN_A_ROW = 8, 1, 8
 
@@ -40,16 +38,13 @@ class Kills(Resuming):
                 delay = chance.uniform(0, 0.3) if at_start else chance.uniform(0, 2 * seconds / steps)
                 process = self.after_rows(DIVIDING, 0 if at_start else int(place), signal.SIGKILL, delay)
                 if process.returncode != -signal.SIGKILL:
-                    self.assertEqual(process.returncode, 0, process.stderr_text)  # it came to its end before
+                    self.assertEqual(process.returncode, 0, process.stderr)  # it came to its end before
                     continue
                 lost_rows = max(lost_rows, self.rows_lost(process, known))
                 known = rows_in(self.out)
                 done, early = done + 1, early + at_start
                 steps_hit.add(known)
-            process = start("run", *DIVIDING, "--out", self.out, "--resume")
-            process.stdout_text, process.stderr_text = process.communicate(timeout=300)
-            self.assertEqual(process.returncode, 0, process.stderr_text)
-            lost_rows = max(lost_rows, self.rows_lost(process, known))
+            lost_rows = max(lost_rows, self.rows_lost(self.resumed(DIVIDING), known))
             self.assert_same(self.out, whole)
             self.assertEqual([], [path for path in self.out.rglob("*.part")], "left-overs")
         print(f"{done} kills in {chains} chains of a run of {steps} steps and {seconds:.1f} s, seed {SEED}: {early} at the start "
@@ -59,7 +54,7 @@ class Kills(Resuming):
 
     def rows_lost(self, process, rows):
         """How many rows were cut back by a run that went on: the steps since the last resumable one whose checkpoint was written."""
-        found = re.search(r"resuming after step (\d+)", process.stdout_text)
+        found = re.search(r"resuming after step (\d+)", process.stdout)
         if not found:
             return 0
         lost = rows - int(found.group(1))
@@ -81,8 +76,8 @@ class Signals(Resuming):
                     process = self.after_rows(block, rows, number, 0.05 if rows == 0 else 0)
                     if rows == 0 and process.returncode == -number:
                         continue  # it had not begun
-                    self.assertEqual(process.returncode, status, process.stderr_text)
-                    self.assertIn("--resume", process.stderr_text)
+                    self.assertEqual(process.returncode, status, process.stderr)
+                    self.assertIn("--resume", process.stderr)
                     self.assertEqual(self.summary()["status"], "interrupted")
                 self.resumed(block)
                 self.assert_same(self.out, whole)
@@ -119,19 +114,17 @@ class Directories(Resuming):
                                ("embryo.length_um=70", ["[embryo]", "length_um", "60", "70"]),
                                ("contraction.all.stiffness_nN_per_um=2", ["[contraction.all]", "stiffness_nN_per_um"])):
             with self.subTest(setting):
-                message = self.assert_messages(self.resumed(block, "--set", setting, status=2))[0]
-                for part in parts:
-                    self.assertIn(part, message)
+                self.assert_says(self.resumed(block, "--set", setting, status=2), *parts)
                 self.assertEqual(tree(self.out), before)
 
     def test_another_mesh_under_the_same_name_is_refused(self):
         mesh = self.folder / "mesh.vtu"
         sphere = self.write(SPHERE)
-        self.assertEqual(plica("mesh", sphere, "--out", mesh).returncode, 0)
+        self.call("mesh", sphere, "--out", mesh)
         text = 'format = 1\n[embryo]\nshape = "file"\nfile = "mesh.vtu"\n[time]\nend_s = 0.5\nstep_s = 0.1\n'
         scenario = [self.write(text, "of_mesh.toml")]
         self.resumed(scenario)
-        plica("mesh", sphere, "--set", "embryo.diameter_um=210", "--out", mesh, "--overwrite")
+        self.call("mesh", sphere, "--set", "embryo.diameter_um=210", "--out", mesh, "--overwrite")
         self.assertIn("another mesh", self.resumed(scenario, status=2).stderr)
 
     def test_time_stop_and_output_may_change(self):
@@ -166,29 +159,21 @@ class Directories(Resuming):
         for missing in ("", "summary.json"):
             (self.out / missing).unlink() if missing else None
             before = tree(self.out)
-            message = self.assert_messages(self.resumed(block, status=4))[0]
-            self.assertIn("--overwrite", message)
+            self.assert_says(self.resumed(block, status=4), "--overwrite")
             self.assertEqual(tree(self.out), before)
 
     def test_only_one_run_at_a_time_writes_there(self):
-        support.count_case()
         endless = [self.write(BLOCK), "--set", "time.end_s=1e9"]
-        process = start("run", *endless, "--out", self.out, "--quiet")
-        try:
+        with running("run", *endless, "--out", self.out, "--quiet") as process:
             while process.poll() is None and rows_in(self.out) < 5:
                 time.sleep(0.01)
             for option in ("--resume", "--overwrite"):
-                result = plica("run", *endless, "--out", self.out, option)
-                self.assertEqual(result.returncode, 4, result.stderr)
-                self.assertIn("another process of plica", self.assert_messages(result)[0])
+                self.assert_says(self.call("run", *endless, "--out", self.out, option, status=4), "another process of plica")
             self.assertIsNone(process.poll())
-        finally:
-            process.kill()
-            process.communicate()
         self.resumed([self.write(BLOCK), "--set", "time.end_s=1"])
 
     def test_resume_and_overwrite_exclude_each_other(self):
-        self.assertEqual(plica("run", self.write(BLOCK), "--out", self.out, "--resume", "--overwrite").returncode, 2)
+        self.call("run", self.write(BLOCK), "--out", self.out, "--resume", "--overwrite", status=2)
         self.assertFalse(self.out.exists())
 
     def test_files_that_are_cut_or_gone_are_told_of(self):
@@ -199,16 +184,14 @@ class Directories(Resuming):
                 shutil.rmtree(self.out, ignore_errors=True)
                 self.after_rows(block, 100, signal.SIGTERM)
                 harm(self.out / name)
-                self.assertIn(name, self.assert_messages(self.resumed(block, status=4))[0])
-
+                self.assert_says(self.resumed(block, status=4), name)
 
     def test_another_way_to_solve_may_go_on(self):
         sphere = [self.write(SPHERE), "--set", "stop.at_equilibrium=false"]
         for solver in ("direct", "cholesky", "multigrid"):
             with self.subTest(solver):
                 shutil.rmtree(self.out, ignore_errors=True)
-                result = plica("run", *sphere, "--set", "time.end_s=3", "--out", self.out)
-                self.assertEqual(result.returncode, 0, result.stderr)
+                self.call("run", *sphere, "--set", "time.end_s=3", "--out", self.out)
                 more = ("--set", "time.end_s=6", "--set", f'time.linear_solver="{solver}"')
                 self.assertIn("resuming after step", self.resumed(sphere, *more).stdout)
                 self.assertEqual(self.summary()["time_s"], 6)
@@ -228,10 +211,7 @@ class Damage(Resuming):
         content = bytearray(self.newest.read_bytes())
         content[len(content) // 2] ^= 4
         self.newest.write_bytes(content)
-        result = self.resumed(self.block, "--quiet")
-        message = self.assert_messages(result)[0]
-        for part in ("checkpoint.h5", "damaged", "the previous checkpoint"):
-            self.assertIn(part, message)
+        self.assert_says(self.resumed(self.block, "--quiet"), "checkpoint.h5", "damaged", "the previous checkpoint")
         self.assert_same(self.out, whole)
 
     def test_a_newest_one_that_is_gone_leaves_the_one_before(self):
@@ -244,26 +224,18 @@ class Damage(Resuming):
         self.newest.write_bytes(b"nothing of the kind")
         self.previous.write_bytes(self.previous.read_bytes()[:-1])
         before = tree(self.out)
-        message = self.assert_messages(self.resumed(self.block, status=4))[0]
-        for part in ("checkpoint.h5", "checkpoint.previous.h5", "--overwrite"):
-            self.assertIn(part, message)
+        self.assert_says(self.resumed(self.block, status=4), "checkpoint.h5", "checkpoint.previous.h5", "--overwrite")
         self.assertEqual(tree(self.out), before)
 
     def test_a_newer_format_is_named(self):
         for path in (self.newest, self.previous):
             path.write_bytes(re.sub(rb"\nplica checkpoint \d+ ", b"\nplica checkpoint 9 ", path.read_bytes()))
-        self.assertIn("format", self.assert_messages(self.resumed(self.block, status=4))[0])
+        self.assert_says(self.resumed(self.block, status=4), "format")
 
 
 if __name__ == "__main__":
-    for option in ("--kills", "--seed"):
-        if option in sys.argv:
-            at = sys.argv.index(option)
-            number = int(sys.argv[at + 1])
-            del sys.argv[at : at + 2]
-            if option == "--kills":
-                KILLS = number
-                sys.argv.append("Kills")
-            else:
-                SEED = number
+    SEED = int(support.option("--seed", SEED))
+    if (kills := support.option("--kills")) is not None:
+        KILLS = int(kills)
+        sys.argv.append("Kills")
     support.main()

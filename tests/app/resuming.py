@@ -2,10 +2,8 @@
 import json
 import shutil
 import time
-from pathlib import Path
 
-import support
-from support import CHECKPOINTS, CommandLine, plica, start, tree
+from support import CHECKPOINTS, CommandLine, ended, rows_in, running, tree
 
 # Two divisions, growth after each, frames; 168 steps or so.
 DIVIDING = ["drosophila-division-twice"]
@@ -25,12 +23,6 @@ def results(out):
     return files | {"summary.json": summary}
 
 
-def rows_in(out):
-    """Whole rows of series.csv after the one at rest: steps that have been told of."""
-    series = Path(out) / "series.csv"
-    return max(series.read_bytes().count(b"\n") - 2, 0) if series.exists() else 0
-
-
 class Resuming(CommandLine):
     def assert_same(self, out, whole):
         found = results(out)
@@ -47,28 +39,19 @@ class Resuming(CommandLine):
             self.assertAlmostEqual(found[key] / expected[key], 1, delta=1e-9)
 
     def whole_run(self, arguments, *more):
-        result = plica("run", *arguments, "--out", self.folder / "whole", *more, timeout=300)
-        self.assertEqual(result.returncode, 0, result.stderr)
+        self.call("run", *arguments, "--out", self.folder / "whole", *more, timeout=300)
         return results(self.folder / "whole")
 
     def resumed(self, arguments, *more, status=0, out=None):
-        result = plica("run", *arguments, "--out", out or self.out, "--resume", *more, timeout=300)
-        self.assertEqual(result.returncode, status, result.stdout + result.stderr)
-        return result
+        return self.call("run", *arguments, "--out", out or self.out, "--resume", *more, timeout=300, status=status)
 
     def after_rows(self, arguments, rows, number, delay_s=0.0):
         """Starts or goes on, and signals once series.csv has so many rows and some time has passed. The process, ended."""
-        support.count_case()
-        process = start("run", *arguments, "--out", self.out, "--resume")
-        try:
+        with running("run", *arguments, "--out", self.out, "--resume") as process:
             deadline = time.monotonic() + 120
             while process.poll() is None and rows_in(self.out) < rows and time.monotonic() < deadline:
                 time.sleep(0.002)
             time.sleep(delay_s)
             if process.poll() is None:
                 process.send_signal(number)
-            process.stdout_text, process.stderr_text = process.communicate(timeout=60)
-        finally:
-            process.kill()
-            process.communicate()
-        return process
+            return ended(process)

@@ -7,7 +7,6 @@ Sameness.test_debug_build_with_multigrid (the same bits), or Sameness.test_anoth
 import os
 import re
 import subprocess
-import sys
 
 import support
 from resuming import Resuming, results
@@ -25,11 +24,9 @@ class Sameness(Resuming):
         expected = None
         for threads in (1, 2, 4, 2):
             out = self.folder / f"threads_{threads}"
-            support.count_case()
             # What is set for all tests would win.
             environment = {key: value for key, value in os.environ.items() if key != "OMP_NUM_THREADS"}
-            result = plica("run", *LARGE, "--threads", threads, "--out", out, "--overwrite", env=environment, timeout=280)
-            self.assertEqual(result.returncode, 0, result.stderr)
+            self.call("run", *LARGE, "--threads", threads, "--out", out, "--overwrite", env=environment, timeout=280)
             found = results(out)
             expected = expected or found
             with self.subTest(threads=threads):
@@ -42,9 +39,8 @@ class Sameness(Resuming):
         usual = {name: value for name, value in os.environ.items() if not name.startswith(("OMP_", "GOMP_"))}
 
         def spin_counts(threads, **variables):
-            result = plica("run", scenario, "--threads", threads, "--out", self.out, "--overwrite",
-                           env={**usual, **variables, "OMP_DISPLAY_ENV": "verbose"})
-            self.assertEqual(result.returncode, 0, result.stderr)
+            result = self.call("run", scenario, "--threads", threads, "--out", self.out, "--overwrite",
+                               env={**usual, **variables, "OMP_DISPLAY_ENV": "verbose"})
             return re.findall(r"GOMP_SPINCOUNT = '(\w+)'", result.stderr)
 
         alone = spin_counts(1)
@@ -62,10 +58,8 @@ class Sameness(Resuming):
             end, beginning = os.pipe()
             os.write(beginning, support.BLOCK.encode())
             os.close(beginning)
-            result = plica("run", f"/dev/fd/{end}", "--threads", threads, "--out", self.out, "--overwrite",
-                           env=usual, pass_fds=(end,))
+            self.call("run", f"/dev/fd/{end}", "--threads", threads, "--out", self.out, "--overwrite", env=usual, pass_fds=(end,))
             os.close(end)
-            self.assertEqual(result.returncode, 0, result.stderr)
             resolved.append((self.out / "scenario.toml").read_text())
         self.assertEqual(*resolved)
 
@@ -76,10 +70,8 @@ class Sameness(Resuming):
     def test_any_kernels_but_for_rounding(self):
         series = {}
         for kernels in self.available_kernels():
-            support.count_case()
             out = self.folder / kernels
-            result = plica("run", "drosophila", "--out", out, env=os.environ | {"PLICA_KERNELS": kernels}, timeout=120)
-            self.assertEqual(result.returncode, 0, result.stderr)
+            self.call("run", "drosophila", "--out", out, env=os.environ | {"PLICA_KERNELS": kernels}, timeout=120)
             series[kernels] = table(out / "series.csv")
         apart = max(self.assert_same_but_for_rounding(rows, series["generic"]) for rows in series.values())
         print(f"kernels {', '.join(series)}: series agree to {apart:.1e} of the largest value of a column")
@@ -123,8 +115,5 @@ class Sameness(Resuming):
 
 
 if __name__ == "__main__":
-    if "--beside" in sys.argv:
-        at = sys.argv.index("--beside")
-        OTHER_PROGRAM = sys.argv[at + 1]
-        del sys.argv[at : at + 2]
+    OTHER_PROGRAM = support.option("--beside")
     support.main()

@@ -1,5 +1,5 @@
 """plica study from outside: the table, whatever is killed and whoever runs it."""
-import csv
+import contextlib
 import os
 import random
 import resource
@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 import support
-from support import CommandLine, plica, start
+from support import CommandLine, running, table
 
 # A short run of a coarse embryo.
 SET = {"time.end_min": 0.2, "output.frame_every_min": 0.1, "embryo.cells": [12, 7, 6], "region.furrow.cells_along": 8,
@@ -40,27 +40,13 @@ def children(process):
 
 
 class Study(CommandLine):
-    def setUp(self):
-        super().setUp()
-        self.out = self.folder / "out"
-
-    def study(self, *arguments, status=0, text=STUDY):
+    def study(self, *arguments, text=STUDY, **options):
         self.file = self.write(text)
-        result = plica("study", self.file, "--out", self.out, *arguments)
-        self.assertEqual(result.returncode, status, f"{result.args}\n{result.stdout}{result.stderr}")
-        return result
+        return self.call("study", self.file, "--out", self.out, *arguments, **options)
 
-    def table(self, out=None):
+    def table(self):
         """All but wall_s."""
-        with open((out or self.out) / "runs.csv", newline="", encoding="utf-8") as file:
-            return [{key: value for key, value in row.items() if key != "wall_s"} for row in csv.DictReader(file)]
-
-    def wait_for(self, file):
-        for _ in range(1000):
-            if file.exists():
-                return
-            time.sleep(0.01)
-        self.fail(f"{file} does not come")
+        return [{key: value for key, value in row.items() if key != "wall_s"} for row in table(self.out / "runs.csv")]
 
     def rows_written(self):
         return sum(len(file.read_text().splitlines()) for file in (self.out / "rows").iterdir())
@@ -75,9 +61,8 @@ class Study(CommandLine):
         first = self.folder / "first"
         key = "contraction.apical.stiffness_nN_per_um"
         settings = [f"--set={name}={value}" for name, value in {**SET, key: rows[0][key]}.items()]
-        plica("run", "drosophila", *settings, "--out", first, "--quiet")
-        summary = self.summary(first)
-        self.assertEqual(float(rows[0]["furrow_depth_um"]), summary["furrow_depth_um"])
+        self.call("run", "drosophila", *settings, "--out", first, "--quiet")
+        self.assertEqual(float(rows[0]["furrow_depth_um"]), self.summary(first)["furrow_depth_um"])
 
     def test_any_number_of_jobs_and_any_kill_leave_the_same_table(self):
         text = STUDY.replace("points = 24", f"points = {POINTS}")
@@ -86,20 +71,17 @@ class Study(CommandLine):
         chance = random.Random(5)
         shutil.rmtree(self.out)
         for _ in range(KILLS):
-            process = start("study", self.file, "--out", self.out, "--resume", "--jobs", 3, stdout=subprocess.DEVNULL,
-                            stderr=subprocess.DEVNULL)
-            time.sleep(chance.uniform(0.1, 0.5))
-            at = chance.choice(["parent", "child", "interrupt"])
-            victims = children(process)
-            if at == "child" and victims and process.poll() is None:
-                try:
-                    os.kill(chance.choice(victims), signal.SIGKILL)
-                except ProcessLookupError:
-                    pass
-                time.sleep(0.2)
-            if process.poll() is None:
-                process.send_signal(signal.SIGINT if at == "interrupt" else signal.SIGKILL)
-            process.wait()
+            with running("study", self.file, "--out", self.out, "--resume", "--jobs", 3, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+                time.sleep(chance.uniform(0.1, 0.5))
+                at = chance.choice(["parent", "child", "interrupt"])
+                victims = children(process)
+                if at == "child" and victims and process.poll() is None:
+                    with contextlib.suppress(ProcessLookupError):
+                        os.kill(chance.choice(victims), signal.SIGKILL)
+                    time.sleep(0.2)
+                if process.poll() is None:
+                    process.send_signal(signal.SIGINT if at == "interrupt" else signal.SIGKILL)
+                process.wait()
             for _ in range(100):  # children end with their parent
                 if not any(Path(f"/proc/{pid}").exists() for pid in victims):
                     break
@@ -112,27 +94,28 @@ class Study(CommandLine):
 
     def test_an_interruption_leaves_a_table(self):
         self.file = self.write(STUDY)
-        process = start("study", self.file, "--out", self.out, "--jobs", 1)
-        while not list(self.out.glob("rows/*")):
-            time.sleep(0.02)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate()
-        self.assertEqual(process.returncode, 130)
-        self.assertIn("--resume", errors)
+        with running("study", self.file, "--out", self.out, "--jobs", 1) as process:
+            while not list(self.out.glob("rows/*")):
+                time.sleep(0.02)
+            process.send_signal(signal.SIGINT)
+            result = support.ended(process)
+        self.assertEqual(result.returncode, 130)
+        self.assertIn("--resume", result.stderr)
         statuses = {row["status"] for row in self.table()}
         self.assertEqual(statuses, {"end_time", "not_run"})
-        told = plica("study", "status", self.out)
+        told = self.call("study", "status", self.out)
         self.assertRegex(told.stdout, r"24 runs: \d+ end_time, \d+ not run")
         self.assertIn(f"plica study {self.file} --out {self.out} --resume", told.stdout)
         self.assertIn(f"plica study gather {self.out}", told.stdout)
         # As after a kill, which leaves no table: it is there as soon as the study goes on.
         (self.out / "runs.csv").unlink()
-        going_on = start("study", self.file, "--out", self.out, "--resume", "--jobs", 1, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.wait_for(self.out / "runs.csv")
-        going_on.kill()
-        going_on.wait()
+        with running("study", self.file, "--out", self.out, "--resume", "--jobs", 1, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
+            for _ in range(1000):
+                if (self.out / "runs.csv").exists():
+                    break
+                time.sleep(0.01)
         self.assertEqual(len(self.table()), 24)
-        self.assertEqual(plica("study", "status", self.folder).returncode, 4)
+        self.call("study", "status", self.folder, status=4)
 
     def test_a_failed_point_is_a_row(self):
         # Each of these steps is one, but not every pair.
@@ -143,8 +126,7 @@ class Study(CommandLine):
         self.assertEqual([row["status"] for row in rows], ["end_time", "end_time", "refused", "end_time", "failed", "failed", "refused", "failed"])
         self.assertIn("5 is above max_step_s, 4", rows[2]["reason"])
         self.assertIn("2 x ", result.stdout)
-        checked = plica("check", self.file)
-        self.assertEqual(checked.returncode, 0, checked.stderr)
+        checked = self.call("check", self.file)
         self.assertIn("2 points are invalid", checked.stdout)
         self.assertIn("estimate for all runs", checked.stdout)
 
@@ -178,8 +160,7 @@ class Study(CommandLine):
                          r"own\.toml has changed since .* time\.end_s was 12.* and is now 18.*--overwrite")
         self.study("--overwrite", text=few)
         for flags in ([], ["--overwrite"], ["--resume"]):
-            refused = plica("run", "drosophila", "--set", "time.end_min=0.1", "--out", self.out, *flags)
-            self.assertEqual(refused.returncode, 2)
+            refused = self.call("run", "drosophila", "--set", "time.end_min=0.1", "--out", self.out, *flags, status=2)
             self.assertIn("contains a study; give another --out", refused.stderr)
         before = (self.out / "runs.csv").read_bytes()
         begun = self.out / "study.json"
@@ -194,36 +175,30 @@ class Study(CommandLine):
         (foreign / "thesis.txt").write_text("mine")
         (foreign / "points").mkdir()
         for flags in ([], ["--resume"], ["--overwrite"]):
-            refused = plica("study", self.file, "--out", foreign, *flags)
-            self.assertEqual((refused.returncode, sorted(p.name for p in foreign.iterdir())), (2, ["points", "thesis.txt"]))
+            self.call("study", self.file, "--out", foreign, *flags, status=2)
+            self.assertEqual(sorted(p.name for p in foreign.iterdir()), ["points", "thesis.txt"])
         (self.folder / "own.toml").write_text('base = "drosophila"\n')
         (self.folder / "owl.toml").write_text(STUDY.replace('"drosophila"', '"onw.toml"'))
         for arguments, told in [(["study", self.folder / "own.toml", "--out", "x"], "is a scenario, not a study; run it with plica run"),
                                 (["study", "drosophila", "--out", "x"], "is a scenario, not a study; run it with plica run"),
                                 (["run", self.file, "--out", "x"], "is a study, not a scenario; run it with plica study"),
                                 (["study", self.folder / "owl.toml", "--out", "x"], 'use "own.toml"')]:
-            result = plica(*arguments)
-            self.assertEqual(result.returncode, 2)
-            self.assertIn(told, result.stderr)
+            self.assertIn(told, self.call(*arguments, status=2).stderr)
         for arguments, told in [([], "STUDY: missing"), ([self.file], "--out"), (["none.toml", "--out", "x"], "none.toml")]:
-            result = plica("study", *arguments)
-            self.assertIn(result.returncode, (2, 4))
-            self.assertIn(told, result.stderr)
+            self.assertIn(told, self.call("study", *arguments, status=(2, 4)).stderr)
 
     def test_a_full_disk(self):
         def small_files():
             resource.setrlimit(resource.RLIMIT_FSIZE, (900, 900))
 
-        self.file = self.write(STUDY.replace("points = 24", "points = 12"))
-        self.study("--jobs", 1, "--quiet", text=STUDY.replace("points = 24", "points = 12"))
+        text = STUDY.replace("points = 24", "points = 12")
+        self.study("--jobs", 1, "--quiet", text=text)
         truth = self.table()
         shutil.rmtree(self.out / "rows")
         (self.out / "rows").mkdir()
-        result = subprocess.run([support.PROGRAM, "study", str(self.file), "--out", str(self.out), "--resume", "--jobs", "1"],
-                                capture_output=True, text=True, preexec_fn=small_files, check=False)
-        self.assertEqual(result.returncode, 4, result.stderr)
+        result = self.study("--resume", "--jobs", 1, text=text, preexec_fn=small_files, status=4)
         self.assertIn("cannot be written", result.stderr)
-        self.study("--resume", "--jobs", 1, "--quiet", text=STUDY.replace("points = 24", "points = 12"))
+        self.study("--resume", "--jobs", 1, "--quiet", text=text)
         self.assertEqual(self.table(), truth)
 
     def test_points_of_a_file(self):

@@ -6,6 +6,7 @@ Nothing of plica is linked or read here: the program is run as a black box on sm
 Run: FILE_test.py [PROGRAM] [unittest options], or with PLICA=PROGRAM in the environment.
 """
 import base64
+import contextlib
 import csv
 import json
 import math
@@ -25,15 +26,13 @@ from pathlib import Path
 PROGRAM = ""
 CASES = 0  # programs started and judged; printed at the end
 
-BLOCK = """\
-format = 1
-title = "A small block"
-[embryo]
-shape = "block"
-length_um = 60
-width_um = 40
-cell_height_um = 40
-cells = [3, 2, 1]
+
+def block(length, width, height, cells):
+    """A table [embryo] of a block, in um."""
+    return f'[embryo]\nshape = "block"\nlength_um = {length}\nwidth_um = {width}\ncell_height_um = {height}\ncells = {cells}\n'
+
+
+BLOCK = 'format = 1\ntitle = "A small block"\n' + block(60, 40, 40, [3, 2, 1]) + """\
 [contraction.all]
 region = "all"
 stiffness_nN_per_um = 1
@@ -109,33 +108,50 @@ WITH_WALL_TIMES = {"summary.json", "report.html"} | CHECKPOINTS  # everything el
 
 
 def count_case():
-    """A program started without plica(), by a test that has to handle it itself."""
+    """A program started without running(), by a test that has to handle it itself."""
     global CASES
     CASES += 1
 
 
-def start(*arguments, **options):
-    """The program, started; its output is kept apart as text."""
+@contextlib.contextmanager
+def running(*arguments, **options):
+    """The program while it runs, its output kept apart as text; it does not outlive the block."""
+    count_case()
     options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "stdin": subprocess.DEVNULL, "text": True} | options
-    return subprocess.Popen([PROGRAM, *map(str, arguments)], **options)
+    process = subprocess.Popen([PROGRAM, *map(str, arguments)], **options)
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def ended(process, timeout=60):
+    """The finished program: returncode, stdout, stderr."""
+    said = process.communicate(timeout=timeout)
+    return subprocess.CompletedProcess(process.args, process.returncode, *said)
 
 
 def plica(*arguments, timeout=240, **options):
-    """The finished program: returncode, stdout, stderr."""
-    count_case()
-    process = start(*arguments, **options)
-    try:
-        process.stdout_text, process.stderr_text = process.communicate(timeout=timeout)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
-        raise
-    return subprocess.CompletedProcess(process.args, process.returncode, process.stdout_text, process.stderr_text)
+    with running(*arguments, **options) as process:
+        return ended(process, timeout)
 
 
 def table(path):
     """The rows of a .csv with a header."""
-    return list(csv.DictReader(Path(path).read_text().splitlines()))
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def rows_in(out):
+    """Whole rows of series.csv after the one at rest: steps that have been told of."""
+    series = Path(out) / "series.csv"
+    return max(series.read_bytes().count(b"\n") - 2, 0) if series.exists() else 0
+
+
+def page_data(file):
+    """What a report's page holds, but the packed arrays."""
+    return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', Path(file).read_text(), re.S)[1])
 
 
 def tree(folder):
@@ -176,11 +192,21 @@ class CommandLine(unittest.TestCase):
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         return path
 
-    def run_scenario(self, text, *arguments, out=None, status=0, name="scenario.toml", **options):
-        """Runs a scenario given as text into `out` and holds it to a status."""
-        result = plica("run", self.write(text, name), "--out", out or self.out, *arguments, **options)
-        self.assertEqual(result.returncode, status, f"{result.args}\n{result.stdout}{result.stderr}")
+    def call(self, *arguments, status=0, **options):
+        """Runs the program and holds it to a status, or to one of several."""
+        result = plica(*arguments, **options)
+        allowed = status if isinstance(status, tuple) else (status,)
+        self.assertIn(result.returncode, allowed, f"{result.args}\n{result.stdout}{result.stderr}")
         return result
+
+    def run_scenario(self, text, *arguments, out=None, name="scenario.toml", **options):
+        """Runs a scenario given as text into `out`."""
+        return self.call("run", self.write(text, name), "--out", out or self.out, *arguments, **options)
+
+    def same_csv(self, one, other, *names):
+        """Holds tables of two runs to the same bytes."""
+        for name in names:
+            self.assertEqual((one / name).read_bytes(), (other / name).read_bytes(), name)
 
     def assert_messages(self, result, count=1):
         """`count` lines on stderr beside doubts about results, and nothing that came from a library."""
@@ -191,19 +217,33 @@ class CommandLine(unittest.TestCase):
             self.assertNotIn(noise, result.stderr)
         return lines
 
-    def assert_refused(self, text, *parts, line=None, key=None, arguments=(), lines=1):
+    def assert_repeatable(self, text, *ways):
+        """Runs a scenario with several lists of options: what they leave is the same to the byte, wall times apart."""
+        expected = None
+        for number, options in enumerate(ways):
+            self.run_scenario(text, *options, out=self.folder / f"way{number}")
+            found = {name: content for name, content in tree(self.folder / f"way{number}").items() if name not in WITH_WALL_TIMES}
+            expected = expected or found
+            self.assertEqual([name for name in found | expected if found.get(name) != expected.get(name)], [], options)
+
+    def assert_says(self, result, *parts):
+        """One message, with these words in it."""
+        message = self.assert_messages(result)[0]
+        for part in parts:
+            self.assertIn(part, message)
+        return message
+
+    def assert_refused(self, text, *parts, line=None, key=None, arguments=()):
         """Status 2, one message in the contract's format with these words in it, and nothing written."""
         started = time.monotonic()
         result = self.run_scenario(text, *arguments, status=2)
         self.assertLess(time.monotonic() - started, 10)
-        message = self.assert_messages(result, lines)[0]
+        message = self.assert_says(result, *parts)
         if line is not None:
             where = re.escape(str(self.folder / "scenario.toml")) + rf":{line}: "
             self.assertRegex(message, where + (re.escape(key) + ": " if key else ""))
             if key:
                 self.assertRegex(message, r"[;?]", "a message says what would be right")
-        for part in parts:
-            self.assertIn(part, message)
         self.assertFalse(self.out.exists(), "something was written")
 
     def assert_whole(self, out):
@@ -229,6 +269,16 @@ class CommandLine(unittest.TestCase):
 
     def summary(self, out=None):
         return json.loads((Path(out or self.out) / "summary.json").read_text())
+
+
+def option(name, otherwise=None):
+    """The value of an option of a test file's own, which is taken from the command line."""
+    if name not in sys.argv:
+        return otherwise
+    at = sys.argv.index(name)
+    value = sys.argv[at + 1]
+    del sys.argv[at : at + 2]
+    return value
 
 
 def main():

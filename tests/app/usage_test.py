@@ -6,54 +6,38 @@ import select
 import shutil
 
 import support
-from support import BLOCK, SPHERE, CommandLine, plica
+from support import BLOCK, SPHERE, CommandLine, plica, running
 
 
 class Usage(CommandLine):
     def test_help_of_every_command_has_an_example(self):
-        top = plica("--help")
-        self.assertEqual(top.returncode, 0)
+        top = self.call("--help")
         for command in ("run", "check", "mesh", "scenarios", "compare"):
             with self.subTest(command):
                 self.assertIn(command, top.stdout)
-                result = plica(command, "--help")
-                self.assertEqual((result.returncode, result.stderr), (0, ""))
-                self.assertRegex(result.stdout, rf"Example.*plica {command}")
+                self.assertRegex(self.call(command, "--help").stdout, rf"Example.*plica {command}")
 
     def test_version_names_version_commit_and_compiler(self):
-        result = plica("--version")
-        self.assertEqual(result.returncode, 0)
+        result = self.call("--version")
         self.assertRegex(result.stdout, r"^plica \d+\.\d+\.\d+ \([^,]+, .*(GNU|Clang).*\)$")
 
     def test_scenarios_are_listed_one_a_line(self):
-        result = plica("scenarios")
-        self.assertEqual(result.returncode, 0)
+        result = self.call("scenarios")
         names = [line.split()[0] for line in result.stdout.splitlines()]
         self.assertIn("drosophila", names)
         self.assertIn("xenopus", names)
         for name in names:
             with self.subTest(name):
-                self.assertEqual(plica("check", name).returncode, 0)
+                self.call("check", name)
 
     def test_bad_usage_is_status_2(self):
         scenario = self.write(BLOCK, "small.toml")
-        for arguments in (
-            [],
-            ["rum", scenario],
-            ["run"],
-            ["run", scenario],
-            ["run", scenario, "--out"],
-            ["run", scenario, "--out", self.out, "--threads", "0"],
-            ["run", scenario, "--out", self.out, "--threads", "many"],
-            ["run", scenario, "--out", self.out, "--unknown"],
-            ["run", scenario, scenario, "--out", self.out],
-            ["run", scenario, "--out", ""],
-            ["mesh", scenario],
-            ["scenarios", "more"],
-        ):
+        run = ["run", scenario, "--out", self.out]
+        for arguments in ([], ["rum", scenario], ["run"], ["run", scenario], ["run", scenario, "--out"], ["run", scenario, "--out", ""],
+                          [*run, "--threads", "0"], [*run, "--threads", "many"], [*run, "--unknown"], [*run, scenario],
+                          ["mesh", scenario], ["scenarios", "more"]):
             with self.subTest(arguments):
-                result = plica(*arguments, cwd=self.folder)
-                self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
+                result = self.call(*arguments, cwd=self.folder, status=2)
                 self.assertTrue(result.stderr.strip())
                 written = [path for path in self.folder.iterdir() if path != scenario]
                 for path in written:
@@ -68,13 +52,13 @@ class Usage(CommandLine):
             (["mesh", "drosophila", "--out", "x.vtu", "--thread=2"], "unknown option --thread; use --threads (nearest match)"),
             (["study", "status", "--hepl"], "unknown option --hepl; use --help (nearest match)"),
         ):
-            result = plica(*arguments)
-            self.assertEqual((result.returncode, result.stderr.startswith(f"plica: {said}")), (2, True), result.stderr)
+            result = self.call(*arguments, status=2)
+            self.assertTrue(result.stderr.startswith(f"plica: {said}"), result.stderr)
 
     def test_threads_are_an_option_of_whatever_computes(self):
         scenario = self.write(BLOCK)
         self.assertEqual(plica("check", scenario, "--threads", "2").stdout, plica("check", scenario).stdout)
-        self.assertEqual(plica("mesh", scenario, "--threads", "2", "--out", self.folder / "rest.vtu").returncode, 0)
+        self.call("mesh", scenario, "--threads", "2", "--out", self.folder / "rest.vtu")
         for command in ("run", "check", "mesh", "calibrate", "study", "reproduce"):
             self.assertIn("--threads", plica(command, "--help").stdout, command)
 
@@ -92,24 +76,15 @@ class Usage(CommandLine):
     def test_a_scenario_that_cannot_be_read(self):
         for path in (self.folder / "missing.toml", self.folder):
             with self.subTest(path):
-                result = plica("run", path, "--out", self.out)
-                self.assertIn(result.returncode, (2, 4))
-                self.assertIn(str(path), self.assert_messages(result)[0])
+                self.assert_says(self.call("run", path, "--out", self.out, status=(2, 4)), str(path))
                 self.assertFalse(self.out.exists())
 
     def test_building_that_takes_long_is_not_silent(self):
         path = self.write('format = 1\n[embryo]\nshape = "egg"\ncell_count = 90000\n[vitelline]\nenabled = false\n')
         terminal, end = pty.openpty()
-        process = support.start("check", path, stderr=end)
-        support.count_case()
-        try:
+        with running("check", path, stderr=end):
             self.assertTrue(select.select([terminal], [], [], 60)[0], "not a word in a minute")
             self.assertEqual(os.read(terminal, 100), b"building the embryo ...")
-        finally:
-            process.kill()
-            process.communicate()
-            os.close(terminal)
-            os.close(end)
 
     def test_quiet_is_quiet_and_piped_progress_has_no_control_characters(self):
         result = self.run_scenario(BLOCK, "--quiet")
@@ -123,35 +98,19 @@ class BadScenario(CommandLine):
     """What cannot be run is refused with status 2, a line that says where and what instead, and no output folder."""
 
     def test_one_thing_wrong(self):
-        # what is replaced, by what, line of the message, key, words of the message
+        # What is replaced, by what, line of the message, key, words of the message.
         embryo = "[embryo]\n"  # replaced by a table in front of it
-        cases = [
-            ("width_um = 40", "widht_um = 40", 6, "embryo.widht_um", ['"width_um"']),
-            ("[time]", "[tiem]", 12, "tiem", ["time"]),
-            ("end_s = 0.5", "end_s = 1\nend_min = 1", None, None, ["end_s", "end_min"]),
-            ("width_um = 40", "width_um = nan", 6, "embryo.width_um", ["nan"]),
-            ("width_um = 40", "width_um = -inf", 6, "embryo.width_um", ["inf"]),
-            ("[3, 2, 1]", "6", 8, "embryo.cells", ["type"]),
-            ('"block"', '"sphere"', None, None, ["shape"]),
-            ('region = "all"\n', "", 9, "contraction.all.region", ["missing"]),
-            ("format = 1", "format = 2", 1, "format", ["2"]),
-            ("format = 1", "formatt = 1", 1, "formatt", ['"format"']),
-            (embryo, "[region.a]\nx_um = [1000, 2000]\n" + embryo, 3, "region.a", ["no cell"]),
-            (embryo, "[region.a]\nids = [-1]\n" + embryo, 4, "region.a.ids", ["-1"]),
-            (embryo, '[region.a]\nids = [0]\nexcept = ["all"]\n' + embryo, 3, "region.a", ["no cell"]),
-        ]
-        for old, new, line, key, parts in cases:
+        for old, new, line, key, part in (
+            ("width_um = 40", "widht_um = 40", 6, "embryo.widht_um", '"width_um"'),
+            ("[time]", "[tiem]", 12, "tiem", "time"),
+            ("width_um = 40", "width_um = -inf", 6, "embryo.width_um", "inf"),
+            ("[3, 2, 1]", "6", 8, "embryo.cells", "type"),
+            ("format = 1", "formatt = 1", 1, "formatt", '"format"'),
+            (embryo, "[region.a]\nx_um = [1000, 2000]\n" + embryo, 3, "region.a", "no cell"),
+            (embryo, '[region.a]\nids = [0]\nexcept = ["all"]\n' + embryo, 3, "region.a", "no cell"),
+        ):
             with self.subTest(f"{old} -> {new}"):
-                self.assertIn(old, BLOCK)
-                count = None if key is None else 1
-                text = BLOCK.replace(old, new, 1)
-                if count:
-                    self.assert_refused(text, *parts, line=line, key=key)
-                else:
-                    result = self.run_scenario(text, status=2)
-                    for part in parts:
-                        self.assertIn(part, result.stderr)
-                    self.assertFalse(self.out.exists())
+                self.assert_refused(BLOCK.replace(old, new, 1), part, line=line, key=key)
 
     def test_a_mesh_that_would_be_inverted(self):
         for height in ("100", "300", "1e300", "1e-300"):
@@ -163,12 +122,9 @@ class BadScenario(CommandLine):
                             line=7, key="embryo.cell_height_um")
 
     def test_hundreds_of_millions_of_cells_are_refused_before_any_is_made(self):
-        for cells in ("[1000, 1000, 1000]", "[100000, 100000, 1]", "[100000, 100000, 100000]", "[20000, 20000, 1]"):
+        for cells in ("[100000, 100000, 1]", "[20000, 20000, 1]"):
             with self.subTest(cells):
-                # 4 GB of address space: building such a mesh would fail differently.
                 self.assert_refused(BLOCK.replace("[3, 2, 1]", cells), "embryo.cells", line=8, key="embryo.cells")
-        elements = BLOCK.replace("cells = [3, 2, 1]", "cells = [100, 100, 100]\nelements_per_cell = [8, 8, 8]")
-        self.assert_refused(elements, "512000000")
 
     def test_syntax_errors_name_their_line(self):
         for text, line in (("format = 1\n[time\n", 2), ("format = 1\nx = \n", 2), ("a = 1\na = 2\n", 2), (b"\xff\xfe\n", 1),
@@ -185,13 +141,11 @@ class BadScenario(CommandLine):
         self.assert_refused(BLOCK.replace("A small block", "." * 1000) + "wrong = 1\n", "output.wrong")
 
     def test_a_file_without_end_is_refused(self):
+        self.write("#" * (5 << 20), "long.toml")
         for name in ("/dev/zero", "long.toml"):
             with self.subTest(name):
-                self.write("#" * (5 << 20), "long.toml")
                 self.assert_refused(f'base = "{name}"\n', "base", "MiB")
-                result = plica("check", self.folder / name)
-                self.assertEqual(result.returncode, 4)
-                self.assertIn("cannot be read", self.assert_messages(result)[0])
+                self.assert_says(self.call("check", self.folder / name, status=4), "cannot be read")
 
     def test_a_chain_of_bases_has_an_end(self):
         for i in range(40):
@@ -205,63 +159,40 @@ class BadScenario(CommandLine):
                 self.assert_refused(text, part)
 
     def test_bad_set(self):
-        for assignment, part in (
-            ("time", "time"), ("time.", "time."), ("=3", ""), ("", ""), ("time.end_s=", "time.end_s"),
-            ("time.end_s=nan", "nan"), ("time.end_s=-1", "-1"), ("time.end_s=soon", "soon"), ("time.edn_s=1", "end_s"),
-            ("embryo.cells=[1,2", "embryo.cells"), ("time=3", "time"), ("contraction.new.edges=apical", "region"),
-            ("embryo.shape=blok", "block"), ("time.end_s=1=2", "time.end_s"),
-        ):
+        for assignment, part in (("time.", "time."), ("=3", ""), ("", ""), ("time.end_s=soon", "soon"), ("embryo.cells=[1,2", "embryo.cells"),
+                                 ("time=3", "time"), ("contraction.new.edges=apical", "region"), ("time.end_s=1=2", "time.end_s")):
             with self.subTest(assignment):
                 self.assert_refused(BLOCK, "--set", part, arguments=["--set", assignment])
 
     def test_check_and_mesh_refuse_the_same(self):
         path = self.write(BLOCK.replace("width_um", "widht_um"))
         for command in (["check", path], ["mesh", path, "--out", self.folder / "rest.vtu"]):
-            result = plica(*command)
-            self.assertEqual(result.returncode, 2)
-            self.assertIn(f"{path}:6: embryo.widht_um: ", self.assert_messages(result)[0])
+            result = self.call(*command, status=2)
+            self.assert_says(result, f"{path}:6: embryo.widht_um: ")
             self.assertEqual(result.stdout, "")
         self.assertFalse((self.folder / "rest.vtu").exists())
 
     def test_check_refuses_what_only_the_tissue_shows(self):
-        result = plica("check", "furrow-slice", "--set", "furrow.vce_cell=4")
-        self.assertEqual(result.returncode, 2)
-        self.assertIn("furrow.vce_cell: the midline of region", self.assert_messages(result)[0])
+        self.assert_says(self.call("check", "furrow-slice", "--set", "furrow.vce_cell=4", status=2), "furrow.vce_cell: the midline of region")
 
 
 class BadMesh(CommandLine):
     """Mesh files that are none: status 2 or 4, a line that names the file, and no output folder."""
 
     def test_mesh_files_that_are_none(self):
+        """What is wrong within a mesh: tests/tissue/files, and tests/hostile/bad_files.py."""
         rest = self.folder / "rest.vtu"
-        self.assertEqual(plica("mesh", self.write(BLOCK), "--out", rest).returncode, 0)
+        self.call("mesh", self.write(BLOCK), "--out", rest)
         whole = rest.read_bytes()
-        meshes = {
-            "text.vtu": b"hello\n", "empty.vtu": b"", "half.vtu": whole[: len(whole) // 2], "data.vtu": whole[:-60],
-            "zero.vtu": whole[:-200] + bytes(150) + whole[-50:], "noise.vtu": bytes(range(256)) * 20,
-            "legacy.vtk": b"# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 float\n0 0 0 1\n",
-            "xml.vtu": b'<?xml version="1.0"?>\n<VTKFile type="PolyData" version="1.0"></VTKFile>\n',
-        }
-        legacy = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\n"
-        four = "POINTS 4 double\n0 0 0 1 0 0 0 1 0 0 0 1\n"
-        meshes["tetrahedra.vtk"] = (legacy + four + "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n").encode()
-        eight = "POINTS 8 double\n0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1\n"
-        meshes["beyond.vtk"] = (legacy + eight + "CELLS 1 9\n8 0 1 2 3 4 5 6 99\nCELL_TYPES 1\n12\n").encode()
-        meshes["nan.vtk"] = (legacy + eight.replace("0 0 1 1 0 1", "0 0 nan 1 0 1") +
-                             "CELLS 1 9\n8 0 1 2 3 4 5 6 7\nCELL_TYPES 1\n12\n").encode()
-        meshes["none.vtk"] = (legacy + "POINTS 0 double\nCELLS 0 0\nCELL_TYPES 0\n").encode()
+        meshes = {"text.vtu": b"hello\n", "empty.vtu": b"", "half.vtu": whole[: len(whole) // 2], "data.vtu": whole[:-60],
+                  "zero.vtu": whole[:-200] + bytes(150) + whole[-50:], "noise.vtu": bytes(range(256)) * 20}
         scenario = 'format = 1\n[embryo]\nshape = "file"\nfile = "MESH"\n[vitelline]\nenabled = false\n'
         for name, content in meshes.items():
             with self.subTest(name):
                 (self.folder / name).write_bytes(content)
-                result = plica("run", self.write(scenario.replace("MESH", name)), "--out", self.out)
-                self.assertIn(result.returncode, (2, 4), result.stdout + result.stderr)
-                self.assertIn(name, self.assert_messages(result)[0])
+                self.assert_says(self.run_scenario(scenario.replace("MESH", name), status=(2, 4)), name)
                 self.assertFalse(self.out.exists())
-        with self.subTest("missing"):
-            result = plica("run", self.write(scenario.replace("MESH", "missing.vtu")), "--out", self.out)
-            self.assertEqual(result.returncode, 4, result.stderr)
-            self.assertIn("missing.vtu", self.assert_messages(result)[0])
+        self.assert_says(self.run_scenario(scenario.replace("MESH", "missing.vtu"), status=4), "missing.vtu")
 
     def test_a_mesh_that_passes_through_itself_has_no_contact(self):
         # Two cubes, one tilted, whose upper faces cross.
@@ -273,7 +204,7 @@ class BadMesh(CommandLine):
                    "CELL_DATA 2\nSCALARS apical int 1\nLOOKUP_TABLE default\n5 5\n", "cubes.vtk")
         scenario = ('format = 1\n[embryo]\nshape = "file"\nfile = "cubes.vtk"\napical_array = "apical"\n'
                     "[vitelline]\nenabled = false\n")
-        self.assertEqual(plica("check", self.write(scenario)).returncode, 0)
+        self.call("check", self.write(scenario))
         self.assert_refused(scenario + '[self_contact]\nsurface = "both"\n', "the reference mesh self-intersects",
                             "cell 0", line=9, key="self_contact.surface")
 
@@ -284,26 +215,16 @@ class BadSurface(CommandLine):
     SCENARIO = 'format = 1\n[embryo]\nshape = "surface"\nfile = "NAME"\ncell_height_um = 0.3\nleast_edge_ratio = 0\n'
 
     def test_one_thing_wrong(self):
-        corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
-        cases = [
-            ("a.obj", "", "the surface has no faces"),
-            ("a.obj", corners + "f 1 2 3 4\nf 1 2 5\nf 2 1 6\n", "belongs to 3 faces, 0, 1 and 2"),
-            ("a.off", "OFF\n3 1 0\n0 0 0\n", "the file ends after 1 of 3 vertices"),
-        ]
-        for name, text, part in cases:
-            with self.subTest(part):
-                (self.folder / name).write_text(text)
-                self.assert_refused(self.SCENARIO.replace("NAME", name), "embryo.file: ", name, part, line=4)
+        self.write("OFF\n3 1 0\n0 0 0\n", "a.off")
+        self.assert_refused(self.SCENARIO.replace("NAME", "a.off"), "embryo.file: ", "a.off", "the file ends after 1 of 3 vertices", line=4)
         self.assert_refused(self.SCENARIO.replace("NAME", "missing.obj"), "missing.obj", line=4)
 
     def test_keys(self):
         (self.folder / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
         scenario = self.SCENARIO.replace("NAME", "a.obj")
         self.assert_refused(scenario + 'cell_height_array = "height"\n', "remove cell_height_array", line=7, key="embryo.cell_height_array")
-        self.assert_refused(scenario + "[vitelline]\nenabled = true\n", "the surface has a boundary", line=8, key="vitelline.enabled")
         sheet = 'format = 1\n[embryo]\nshape = "sheet"\nlength_um = 50\nwidth_um = 50\ncell_count = 20\ncell_height_um = 9\n'
         self.assert_refused(sheet + "curvature_per_um = [0.1]\n", "set curvature_per_um to two", line=8, key="embryo.curvature_per_um")
-        self.assert_refused(sheet + "curvature_per_um = [0.3, 0]\n", "would overlap itself", line=2)
         self.assert_refused(sheet + "mend = false\n", "is not used", line=8, key="embryo.mend")
         self.assert_refused(sheet + "[vitelline]\nenabled = true\n", "a sheet is open", line=9, key="vitelline.enabled")
 

@@ -1,20 +1,12 @@
 // Base64, diagnostics, memory, files, threads that share work, jobs in the background, output of child processes.
-#include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <iostream>
 #include <new>
-#include <stdexcept>
-#include <string>
-#include <string_view>
 #include <type_traits>
-#include <vector>
 
 #include "core/background.hpp"
 #include "core/base64.hpp"
@@ -26,7 +18,6 @@
 #include "core/threads.hpp"
 #include "support/own_folder.hpp"
 
-namespace plica {
 namespace {
 
 // The vectors of RFC 4648, section 10, and bytes above 127.
@@ -102,16 +93,6 @@ class Gate {
   std::atomic<bool> is_open_ = false;
 };
 
-template <class Action>
-std::string message_of(const Action& action) {
-  try {
-    action();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(Background, DoesJobsInTheirOrderOnAnotherThread) {
   std::vector<int> done;
   std::thread::id worker;
@@ -174,7 +155,7 @@ TEST(Background, AFaultIsToldOnceAndEndsTheWork) {
     EXPECT_FALSE(background.has_failed());
     gate.open();
     while (!background.has_failed()) std::this_thread::yield();
-    EXPECT_EQ(message_of([&] { tell(background); }), "the disk is full");
+    EXPECT_EQ(error_of<std::runtime_error>([&] { tell(background); }), "the disk is full");
     EXPECT_FALSE(background.has_failed());
     background.check();
     background.add([&] { ++later; });
@@ -187,7 +168,7 @@ TEST(Background, AFaultReachesWhoWaitsForAPlace) {
   Background background(1);
   std::string message;
   for (int i = 0; i < 1000 && message.empty(); ++i)
-    message = message_of([&] { background.add([] { throw std::runtime_error("gone"); }); });
+    message = error_of<std::runtime_error>([&] { background.add([] { throw std::runtime_error("gone"); }); });
   EXPECT_EQ(message, "gone");
 }
 
@@ -222,18 +203,11 @@ TEST(OutputOfChild, IsEmptyAfterACrash) {
 }
 
 TEST(OutputOfChild, IsNotWaitedForWhenItStandsStill) {
-  try {
-    (void)output_of_child(
-        "waiting for Godot",
-        []() -> std::string {
-          while (true) ::pause();
-        },
-        1.5);
-    FAIL() << "came back";
-  } catch (const FileError& error) {
-    EXPECT_TRUE(std::string_view(error.what()).starts_with("waiting for Godot made no progress for 2 s"))
-        << error.what();
-  }
+  const auto pause = []() -> std::string {
+    while (true) ::pause();
+  };
+  const std::string said = error_of<FileError>([&] { return output_of_child("waiting for Godot", pause, 1.5); });
+  EXPECT_TRUE(said.starts_with("waiting for Godot made no progress for 2 s")) << said;
 }
 
 // Work takes as long as it takes.
@@ -259,55 +233,20 @@ TEST(OutputOfChild, ChangesNothingHere) {
 namespace fs = std::filesystem;
 
 /// A folder of the test's own, removed at its end.
-class FilesTest : public support::OwnFolder {
+class FilesTest : public OwnFolder {
  protected:
   [[nodiscard]] std::size_t file_count() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
 };
 
-/// No file may grow beyond `bytes` as long as this lives: what a full disk looks like.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    ::getrlimit(RLIMIT_FSIZE, &former_);
-    rlimit limit = former_;
-    limit.rlim_cur = bytes;
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-  ~FileSizeLimit() {
-    ::setrlimit(RLIMIT_FSIZE, &former_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit former_{};
-  void (*handler_)(int);
-};
-
-/// What `action` complains of; empty when it does not.
-template <class Action>
-std::string file_error(const Action& action) {
-  try {
-    action();
-  } catch (const FileError& error) {
-    return error.what();
-  }
-  return {};
-}
-
 TEST_F(FilesTest, WritesWhatItReads) {
-  int cases = 0;
   for (const std::string& content :
        {std::string(), std::string("a\n"), std::string(1 << 20, 'x'), std::string("\0\r\n", 3)}) {
     write_file(folder / "file", content);
     EXPECT_EQ(read_file(folder / "file"), content);
     EXPECT_EQ(file_count(), 1U);
-    ++cases;
   }
-  std::cout << cases << " contents\n";
 }
 
 TEST_F(FilesTest, WritesWithTheUsualPermissions) {
@@ -328,9 +267,12 @@ TEST_F(FilesTest, ALinkStaysALink) {
 TEST_F(FilesTest, WhatCannotBeWrittenIsNamed) {
   fs::create_directory(folder / "folder");
   const std::string missing = (folder / "none" / "file").string(), directory = (folder / "folder").string();
-  EXPECT_EQ(file_error([&] { write_file(missing, "a"); }), missing + ": cannot be written: No such file or directory");
-  EXPECT_EQ(file_error([&] { write_file(directory, "a"); }), directory + ": cannot be written: Is a directory");
-  EXPECT_EQ(file_error([] { write_file("/dev/full", "a"); }), "/dev/full: cannot be written: No space left on device");
+  EXPECT_EQ(error_of<FileError>([&] { write_file(missing, "a"); }),
+            missing + ": cannot be written: No such file or directory");
+  EXPECT_EQ(error_of<FileError>([&] { write_file(directory, "a"); }),
+            directory + ": cannot be written: Is a directory");
+  EXPECT_EQ(error_of<FileError>([] { write_file("/dev/full", "a"); }),
+            "/dev/full: cannot be written: No space left on device");
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
   EXPECT_EQ(file_count(), 1U);
 }
@@ -341,7 +283,7 @@ TEST_F(FilesTest, AFullDiskLeavesTheFormerFile) {
   std::string error;
   {
     const FileSizeLimit limit(50'000);
-    error = file_error([&] { write_file(folder / "file", content); });
+    error = error_of<FileError>([&] { write_file(folder / "file", content); });
   }
   EXPECT_EQ(error, (folder / "file").string() + ": cannot be written: File too large");
   EXPECT_EQ(read_file(folder / "file"), "former");
@@ -350,14 +292,15 @@ TEST_F(FilesTest, AFullDiskLeavesTheFormerFile) {
 
 TEST_F(FilesTest, WhatCannotBeReadIsNamed) {
   const std::string missing = (folder / "none").string(), large = (folder / "large").string();
-  EXPECT_EQ(file_error([&] { read_file(missing); }), missing + ": cannot be read: No such file or directory");
-  EXPECT_EQ(file_error([&] { read_file(folder); }), folder.string() + ": cannot be read: Is a directory");
+  EXPECT_EQ(error_of<FileError>([&] { read_file(missing); }), missing + ": cannot be read: No such file or directory");
+  EXPECT_EQ(error_of<FileError>([&] { read_file(folder); }), folder.string() + ": cannot be read: Is a directory");
   write_file(large, "a");
   fs::resize_file(large, largest_file_read_bytes);
   EXPECT_EQ(read_file(large).size(), largest_file_read_bytes);
   fs::resize_file(large, largest_file_read_bytes + 1);
-  EXPECT_EQ(file_error([&] { read_file(large); }), large + ": cannot be read: it is larger than 256 MiB");
-  EXPECT_EQ(file_error([] { read_file("/dev/zero"); }), "/dev/zero: cannot be read: it is larger than 256 MiB");
+  EXPECT_EQ(error_of<FileError>([&] { read_file(large); }), large + ": cannot be read: it is larger than 256 MiB");
+  EXPECT_EQ(error_of<FileError>([] { read_file("/dev/zero"); }),
+            "/dev/zero: cannot be read: it is larger than 256 MiB");
 }
 
 TEST_F(FilesTest, RowsCanBeReadAtOnce) {
@@ -382,9 +325,9 @@ TEST_F(FilesTest, RowsGoOnWhereTheCheckpointWas) {
   }
   EXPECT_EQ(read_file(folder / "rows"), "a\nb\nd\n");
   const std::string path = (folder / "rows").string();
-  EXPECT_EQ(file_error([&] { RowFile(path, 7); }),
+  EXPECT_EQ(error_of<FileError>([&] { RowFile(path, 7); }),
             path + ": cannot be written: it has 6 bytes, fewer than the 7 to continue from");
-  EXPECT_EQ(file_error([&] { RowFile(path, 3); }),
+  EXPECT_EQ(error_of<FileError>([&] { RowFile(path, 3); }),
             path + ": cannot be written: its first 3 bytes do not end with a complete row");
   EXPECT_EQ(read_file(path), "a\nb\nd\n");
   RowFile(path).append("anew");
@@ -405,7 +348,7 @@ TEST_F(FilesTest, RowsMoveAndDoNotCopy) {
 
 TEST_F(FilesTest, ARowThatDoesNotFitIsAnErrorAndIsCutOff) {
   RowFile full("/dev/full");
-  EXPECT_EQ(file_error([&] { full.append("a"); }), "/dev/full: cannot be written: No space left on device");
+  EXPECT_EQ(error_of<FileError>([&] { full.append("a"); }), "/dev/full: cannot be written: No space left on device");
 
   RowFile file(folder / "rows");
   const std::string row(39, 'x');
@@ -414,7 +357,7 @@ TEST_F(FilesTest, ARowThatDoesNotFitIsAnErrorAndIsCutOff) {
   {
     const FileSizeLimit limit(100);
     while (error.empty() && rows < 10) {
-      error = file_error([&] { file.append(row); });
+      error = error_of<FileError>([&] { file.append(row); });
       if (error.empty()) ++rows;
     }
   }
@@ -427,4 +370,3 @@ TEST_F(FilesTest, ARowThatDoesNotFitIsAnErrorAndIsCutOff) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,23 +1,12 @@
 // Files of experiments, their quantities as formulas, and what is judged of them.
 #include "experiments/judgement.hpp"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
-#include <stdexcept>
-
-#include "core/errors.hpp"
 #include "core/files.hpp"
 #include "experiments/experiments.hpp"
 #include "experiments/formula.hpp"
-#include "support/block_scenario.hpp"
 #include "support/own_folder.hpp"
 #include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 // The middle is in 7-10 um from 7 s to 10 s, the ends in 13-17 um from 6.5 s to 8.5 s; no row lies in both.
@@ -93,12 +82,7 @@ TEST(Formula, RefusesWhatItDoesNotUnderstand) {
            {"1 > 2", "has \"> 2\" where"},
            {"mean(middle)", "\"mean\" is not a function; use max, min, first"},
            {std::string(1000, '('), "nested too deeply"}}) {
-    try {
-      (void)Formula(text);
-      ADD_FAILURE() << text;
-    } catch (const std::invalid_argument& error) {
-      EXPECT_NE(std::string(error.what()).find(problem), std::string::npos) << text << ": " << error.what();
-    }
+    EXPECT_SAYS(error_of<std::invalid_argument>([&] { return Formula(text); }), problem) << text;
   }
 }
 
@@ -193,21 +177,20 @@ TEST(VerdictOfClaim, FollowsFromTheFirstReadingAndTheOthers) {
 }
 
 // A file of experiments, with a scenario and a table of draws beside it.
-class ReadExperiments : public support::OwnFolder {
+class ReadExperiments : public OwnFolder {
  protected:
   ReadExperiments() {
-    write("block.toml", support::pulled_block().text);
+    write("block.toml", pulled_block().text);
     write("draws.csv", "contraction.all.stiffness_nN_per_um,time.end_s\n1,5\n2,5\n3,4\n");
   }
   [[nodiscard]] Experiments parsed(const std::string& text) const {
     return parse_experiments("mine", (folder / "mine.toml").string(), text);
   }
-  // All that is wrong, without the folder.
+  // All that is wrong, without the folder; with lines of the file.
   [[nodiscard]] std::string complaint(const std::string& text) const {
-    std::string what = support::errors_in([&] { check_experiments(parsed(text)); });
-    for (std::size_t at = what.find(folder.string()); at != std::string::npos; at = what.find(folder.string()))
-      what.erase(at, folder.string().size() + 1);
-    return what;
+    const std::string what = errors_in([&] { check_experiments(parsed(text)); });
+    return std::regex_replace(std::regex_replace(what, std::regex(folder.string() + "/"), ""), std::regex("mine.toml:"),
+                              "line ");
   }
 };
 
@@ -295,50 +278,45 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
     std::vector<std::string> complaint;  // has all of these
   };
   const std::vector<Case> cases = {
-      {"title = \"Blocks\"", "titel = 1", {"mine.toml:1: titel: unknown key; use \"title\" (nearest match)"}},
-      {"title = \"Blocks\"", "format = 2", {"mine.toml:1: format: is unknown to this version"}},
-      {"draws = 2", "draw = 2", {"mine.toml:14: experiment.stiff.draw: unknown key; use \"draws\" (nearest match)"}},
+      {"title = \"Blocks\"", "titel = 1", {"line 1: titel: unknown key; use \"title\" (nearest match)"}},
+      {"title = \"Blocks\"", "format = 2", {"line 1: format: is unknown to this version"}},
+      {"draws = 2", "draw = 2", {"line 14: experiment.stiff.draw: unknown key; use \"draws\" (nearest match)"}},
       {"draws = 2",
        "draws = 2\ndrawn = false",
-       {"mine.toml:14: experiment.stiff.draws: conflicts with drawn = false, which makes one run; remove it"}},
+       {"line 14: experiment.stiff.draws: conflicts with drawn = false, which makes one run; remove it"}},
       {"draws = 2",
        "draws = 0",
-       {"mine.toml:14: experiment.stiff.draws: 0 is out of range; set draws to a whole number from 1"}},
-      {"slow = true", "slow = \"no\"", {"mine.toml:15: experiment.stiff.slow: is not true or false"}},
-      {"\"block.toml\"", "\"blok.toml\"", {"mine.toml:2: scenario: ", "use \"block.toml\" (nearest match)"}},
-      {"\"draws.csv\"", "\"drawn.csv\"", {"mine.toml:3: draws: ", "name a CSV file"}},
+       {"line 14: experiment.stiff.draws: 0 is out of range; set draws to a whole number from 1"}},
+      {"slow = true", "slow = \"no\"", {"line 15: experiment.stiff.slow: is not true or false"}},
+      {"\"block.toml\"", "\"blok.toml\"", {"line 2: scenario: ", "use \"block.toml\" (nearest match)"}},
+      {"\"draws.csv\"", "\"drawn.csv\"", {"line 3: draws: ", "name a CSV file"}},
       {"role = \"fitted\"",
        "role = \"fited\"",
-       {"mine.toml:6: ", "role: \"fited\" is unknown; use \"fitted\" (nearest match)"}},
+       {"line 6: ", "role: \"fited\" is unknown; use \"fitted\" (nearest match)"}},
       {"prediction = \"hit\"\n",
        "",
-       {"mine.toml:",
-        "experiment.stiff.outcome.end.prediction: is missing; give the result you predict before the run"}},
-      {"prediction = \"hit\"",
-       "prediction = \"yes\"",
-       {"mine.toml:12: experiment.stiff.prediction: \"yes\" is unknown"}},
+       {"experiment.stiff.outcome.end.prediction: is missing; give the result you predict before the run"}},
+      {"prediction = \"hit\"", "prediction = \"yes\"", {"line 12: experiment.stiff.prediction: \"yes\" is unknown"}},
       {"question = \"How long is it?\"\n",
        "",
        {"experiment.reference.outcome.end.question: is missing; give it as a sentence"}},
       {"quantity = \"end.position_um\"\nhit", "hit", {"experiment.reference.outcome.end.quantity: is missing"}},
-      {"hit = [20, 30]\n", "", {"mine.toml:4: experiment.reference.outcome.end.hit: is missing; give [from, to]"}},
-      {"hit = [20, 30]", "hit = [30, 20]", {"mine.toml:8: ", "is an empty range; give the smaller number first"}},
-      {"hit = [20, 30]", "hit = 20", {"mine.toml:8: ", "is not a pair of numbers"}},
-      {"undecided = 0.5", "undecided = -1", {"mine.toml:20: ", "undecided: is negative; give 0 or more"}},
-      {"undecided = 0.5", "undecided = inf", {"mine.toml:20: ", "undecided: is not a number"}},
+      {"hit = [20, 30]\n", "", {"line 4: experiment.reference.outcome.end.hit: is missing; give [from, to]"}},
+      {"hit = [20, 30]", "hit = [30, 20]", {"line 8: ", "is an empty range; give the smaller number first"}},
+      {"hit = [20, 30]", "hit = 20", {"line 8: ", "is not a pair of numbers"}},
+      {"undecided = 0.5", "undecided = -1", {"line 20: ", "undecided: is negative; give 0 or more"}},
+      {"undecided = 0.5", "undecided = inf", {"line 20: ", "undecided: is not a number"}},
       {"minus = \"reference\"",
        "minus = \"referense\"",
-       {"mine.toml:18: ", "is not an experiment of this file; use \"reference\" (nearest match)"}},
-      {"minus = \"reference\"", "minus = \"stiff\"", {"mine.toml:18: ", "is the experiment itself"}},
-      {"undecided = 0.5",
-       "over = \"reference\"",
-       {"mine.toml:18: ", "minus: conflicts with over; remove one of the two"}},
+       {"line 18: ", "is not an experiment of this file; use \"reference\" (nearest match)"}},
+      {"minus = \"reference\"", "minus = \"stiff\"", {"line 18: ", "is the experiment itself"}},
+      {"undecided = 0.5", "over = \"reference\"", {"line 18: ", "minus: conflicts with over; remove one of the two"}},
       {"[experiment.stiff.outcome.rest]",
        "[experiment.\"st iff\".outcome.rest]",
        {"experiment.st iff: is not a valid name; use letters"}},
       {"[experiment.reference.outcome.end]\n",
        "[experiment.reference]\noutcome = 3\n",
-       {"mine.toml:5: experiment.reference.outcome: is not a table"}},
+       {"line 5: experiment.reference.outcome: is not a table"}},
       {"[experiment.reference.outcome.end]\n",
        "[experiment.reference.outcome]\n",
        {"experiment.reference.outcome.hit: is not a table; outcomes have names: write "
@@ -353,32 +331,31 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
        {}},
       {"quantity = \"end.position_um\"\nhit",
        "quantity = \"end.positon_um\"\nhit",
-       {"mine.toml:4: experiment.reference.outcome.end.quantity: \"end.positon_um\" is not a number of summary.json; "
-        "use "
-        "\"end.position_um\" (nearest match)"}},
+       {"line 4: experiment.reference.outcome.end.quantity: \"end.positon_um\" is not a number of summary.json; "
+        "use \"end.position_um\" (nearest match)"}},
       {"quantity = \"end.position_um\"\nhit",
        "quantity = \"end.position_um@9 / end.position_um@\"\nhit",
-       {"mine.toml:7: experiment.reference.outcome.end.quantity: is incomplete; write names of numbers"}},
+       {"line 7: experiment.reference.outcome.end.quantity: is incomplete; write names of numbers"}},
       {"quantity = \"end.position_um\"\nhit",
        "quantity = \"end.positon_um@9\"\nhit",
-       {"mine.toml:4: ", "\"end.positon_um\" is not a column of series.csv; use \"end.position_um\" (nearest match)"}},
+       {"line 4: ", "\"end.positon_um\" is not a column of series.csv; use \"end.position_um\" (nearest match)"}},
       {"hit = [20, 30]",
        "hit = [20, 30]\nother_quantity = \"time_s\"",
-       {"mine.toml:9: ", "other_quantity: applies only with over or minus; remove it"}},
-      {"title = \"Blocks\"", "kind = \"claim\"", {"mine.toml:1: kind: \"claim\" is unknown; use \"claims\""}},
+       {"line 9: ", "other_quantity: applies only with over or minus; remove it"}},
+      {"title = \"Blocks\"", "kind = \"claim\"", {"line 1: kind: \"claim\" is unknown; use \"claims\""}},
       {"across_ratio\" = 0.5",
        "acros_ratio\" = 0.5",
-       {"mine.toml:13: experiment.stiff.set.contraction.all.acros_ratio: unknown key; use \"across_ratio\" (nearest "
+       {"line 13: experiment.stiff.set.contraction.all.acros_ratio: unknown key; use \"across_ratio\" (nearest "
         "match)"}},
       {"across_ratio\" = 0.5",
        "across_ratio\" = \"x\"",
-       {"mine.toml:13: experiment.stiff.set.contraction.all.across_ratio: \"x\" has the wrong type; set across_ratio "
+       {"line 13: experiment.stiff.set.contraction.all.across_ratio: \"x\" has the wrong type; set across_ratio "
         "to a number"}},
       {"contraction.all.across_ratio",
        "contraction.al.across_ratio",
-       {"mine.toml:13: experiment.stiff.set.contraction.al.across_ratio: the scenario has no contraction.al; use "
+       {"line 13: experiment.stiff.set.contraction.al.across_ratio: the scenario has no contraction.al; use "
         "\"all\" (nearest match)"}},
-      {"title = \"Blocks\"", "title = \"Blocks", {"mine.toml:1:"}},
+      {"title = \"Blocks\"", "title = \"Blocks", {"line 1:"}},
   };
   int refused = 0;
   for (const Case& one : cases) {
@@ -387,24 +364,21 @@ TEST_F(ReadExperiments, RefuseWhatIsWrongWithLineKeyAndRemedy) {
     ASSERT_NE(at, std::string::npos) << one.from;
     text.replace(at, one.from.size(), one.to);
     const std::string found = complaint(text);
-    for (const std::string& part : one.complaint)
-      EXPECT_NE(found.find(part), std::string::npos) << part << "\n" << found;
+    for (const std::string& part : one.complaint) EXPECT_SAYS(found, part);
     EXPECT_EQ(found.empty(), one.complaint.empty()) << one.to << "\n" << found;
     refused += one.complaint.empty() ? 0 : 1;
   }
   EXPECT_GE(refused, 25);
-  EXPECT_NE(complaint("[experiment.a.outcome.\"../b\"]\n").find("experiment.a.outcome.../b: is not a valid name"),
-            std::string::npos);
-  EXPECT_NE(complaint("[experiment.a.outcome.b]\n").find("experiment.a.scenario: is missing"), std::string::npos);
+  EXPECT_SAYS(complaint("[experiment.a.outcome.\"../b\"]\n"), "experiment.a.outcome.../b: is not a valid name");
+  EXPECT_SAYS(complaint("[experiment.a.outcome.b]\n"), "experiment.a.scenario: is missing");
   std::string slow = good;
   slow.erase(slow.find("slow = true\n"), 12);
   slow.insert(slow.find("[experiment.reference.outcome.end]"), "[experiment.reference]\nslow = true\n");
-  EXPECT_NE(complaint(slow).find("is compared with reference, which is slow"), std::string::npos);
-  EXPECT_NE(complaint("").find("mine.toml: no experiments; write [experiment.NAME]"), std::string::npos);
-  EXPECT_NE(complaint(support::pulled_block().text).find("no experiments"), std::string::npos);
-  EXPECT_NE(complaint("[experiment]\n").find("experiment: is empty"), std::string::npos);
-  EXPECT_NE(complaint("[experiment.a]\nscenario = \"block.toml\"\n").find("experiment.a.outcome: is missing"),
-            std::string::npos);
+  EXPECT_SAYS(complaint(slow), "is compared with reference, which is slow");
+  EXPECT_SAYS(complaint(""), " no experiments; write [experiment.NAME]");
+  EXPECT_SAYS(complaint(pulled_block().text), "no experiments");
+  EXPECT_SAYS(complaint("[experiment]\n"), "experiment: is empty");
+  EXPECT_SAYS(complaint("[experiment.a]\nscenario = \"block.toml\"\n"), "experiment.a.outcome: is missing");
 }
 
 TEST_F(ReadExperiments, RefuseDrawsWithFileLineAndColumn) {
@@ -423,7 +397,7 @@ TEST_F(ReadExperiments, RefuseDrawsWithFileLineAndColumn) {
   };
   for (const auto& [draws, expected] : cases) {
     write_file(folder / "draws.csv", draws);
-    EXPECT_NE(complaint(good).find(expected), std::string::npos) << expected << "\n" << complaint(good);
+    EXPECT_SAYS(complaint(good), expected) << expected << "\n" << complaint(good);
   }
 }
 
@@ -445,7 +419,7 @@ TEST_F(ReadExperiments, OfClaimsNeedNoPrediction) {
   text.replace(text.find("[experiment.reference"), 0,
                "[quantity]\nreach = \"end.position_um@rest\"\nrest = \"time_s\"\n");
   text.replace(text.find("minus ="), 0, "other_quantity = \"reach\"\n");
-  EXPECT_NE(complaint(text).find("\"rest\" is not a number of summary.json"), std::string::npos) << complaint(text);
+  EXPECT_SAYS(complaint(text), "\"rest\" is not a number of summary.json");
   text.replace(text.find("@rest"), 5, "@5");
   const Experiments experiments = parsed(text);
   EXPECT_TRUE(experiments.are_of_claims);
@@ -466,4 +440,3 @@ TEST_F(ReadExperiments, NotDrawnRunOnceAsTheirScenarioIs) {
 }
 
 }  // namespace
-}  // namespace plica

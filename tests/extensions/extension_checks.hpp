@@ -2,18 +2,11 @@
 // through a division, and go with the paper's algorithm or be refused by it.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <functional>
-
-#include "record/archive.hpp"
-#include "record/checkpoint.hpp"
 #include "scenario/load.hpp"
-#include "simulation/simulation.hpp"
 #include "support/law_checks.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
-#include "support/ran.hpp"
+#include "support/resumed.hpp"
 
 namespace plica::support {
 
@@ -37,8 +30,7 @@ inline void expect_same_run_with_every_solver(const Extension& extension) {
     ends.push_back(simulation.state().positions);
   }
   double apart = 0;
-  for (std::size_t m = 1; m < ends.size(); ++m)
-    for (std::size_t n = 0; n < ends[0].size(); ++n) apart = std::max(apart, (ends[m][n] - ends[0][n]).norm());
+  for (const Vectors& end : ends) apart = std::max(apart, largest_distance(end, ends[0]));
   std::printf("direct, cholesky and multigrid end %.1e um apart\n", apart);
   EXPECT_LE(apart, 1e-6);
 }
@@ -61,18 +53,12 @@ inline void expect_resumable_through_a_division(const Extension& extension,
   int resumed = 0;
   for (std::size_t k = 0; k < steps.size(); k += 7, ++resumed) {
     SCOPED_TRACE(testing::Message() << "from step " << k + 1 << " of " << steps.size());
-    Checkpoint checkpoint{"", "", "", steps[k].memory, {}};
-    checkpoint.record.rows.push_back(steps[k].measures);
-    if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
     Simulation rest = fresh();
-    rest.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+    go_on_by_bytes(rest, steps[k].memory, steps[k].measures);
     while (rest.step()) (void)rest.memory();  // which makes it forget its factor, as the whole run
     EXPECT_EQ(rest.status(), whole.status());
     EXPECT_EQ(rest.steps(), whole.steps());
-    EXPECT_EQ(rest.state().positions, whole.state().positions);
-    EXPECT_EQ(rest.state().multipliers, whole.state().multipliers);
-    EXPECT_EQ(rest.state().contact_forces, whole.state().contact_forces);
-    EXPECT_EQ(rest.state().internals, whole.state().internals);
+    expect_same(rest.state(), whole.state());
     ASSERT_FALSE(testing::Test::HasFailure());
   }
   EXPECT_GT(resumed, 3);

@@ -1,15 +1,10 @@
 // Doors for new parts, tried: a constraint with a dense row, an obstacle, a law whose pattern changes, one that bounds
 // steps.
-#include <array>
-#include <cmath>
-
 #include "extensions/extension_checks.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
+#include "support/ran.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const Extension yolk = [](Model& model) {
   model.constraints.push_back(std::make_unique<EnclosedVolume>(model.tissue));
@@ -113,9 +108,7 @@ TEST(Plane, ANodeMayTouchSeveral) {
   for (const Vec3& x : model.tissue.rest_positions) low = low.cwiseMin(x);
   for (int axis = 0; axis < 3; ++axis)
     model.obstacles.push_back(std::make_unique<Plane>(model.tissue, Vec3::Unit(axis), low[axis] - 0.5));
-  RunControls controls;
-  controls.end_s = 1e5;
-  controls.equilibrium_speed_um_per_s = 1e-6;
+  RunControls controls{.end_s = 1e5, .equilibrium_speed_um_per_s = 1e-6};
   const Simulation simulation = ran(std::move(model), controls);
   ASSERT_EQ(simulation.status(), RunStatus::equilibrium) << simulation.failure();
   const Contacts contacts(simulation.model());
@@ -227,4 +220,3 @@ TEST(MaxFraction, BoundsEveryDirectionBeforeItIsTried) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -4,16 +4,9 @@
 // Tension k (l - L), dL/dt = (l - L)/tau, with the rate at the end of the step as in every law (law.hpp):
 //   L = (L_before + (rate_s/tau) l) / (1 + rate_s/tau),   tension = k (l - L_before) / (1 + rate_s/tau).
 // The internal state: L at the step's beginning, then L at the beginning of the step before, for steps of second order.
-#include <algorithm>
-
 #include "extensions/extension_checks.hpp"
-#include "support/law_checks.hpp"
-#include "tissue/division.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 class MaxwellSprings final : public Law {
  public:
@@ -164,11 +157,8 @@ TEST(MaxwellSprings, TensionDecaysAtConstantLength) {
   Model model(build_block({.length_um = 20, .width_um = 20, .cell_height_um = 20, .cells = {1, 1, 1}}));
   model.laws.push_back(std::make_unique<MaxwellSprings>(model.tissue, 3, 10));
   for (auto& held : model.held) held = {true, true, true};
-  RunControls controls;
-  controls.fixed_step_s = 0.05;
-  controls.scheme.order = TimeOrder::second;
-  controls.end_s = 10;
-  controls.stop_at_equilibrium = false;
+  RunControls controls{
+      .scheme = {.order = TimeOrder::second}, .fixed_step_s = 0.05, .end_s = 10, .stop_at_equilibrium = false};
   Simulation simulation({std::make_unique<Model>(std::move(model)), controls});
   ASSERT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
   const std::vector<double>& rest_lengths = simulation.state().internals.at(0);
@@ -199,4 +189,3 @@ TEST(MaxwellSprings, ResumeToTheSameBitsThroughADivision) { expect_resumable_thr
 TEST(MaxwellSprings, WorkWithThePapersAlgorithm) { expect_runs_with_the_papers_algorithm(maxwell); }
 
 }  // namespace
-}  // namespace plica

@@ -9,19 +9,16 @@ centres as CSV. A draw damages one of them in one way. Then plica reads it, and 
 
 Usage: bad_files.py PROGRAM [--count N] [--seed S] [--first I] [--keep DIR]
 """
-import argparse
-import collections
 import copy
 import math
-import random
 import re
-import shutil
 import struct
 import subprocess
 import sys
-import tempfile
 from dataclasses import dataclass, field
-from pathlib import Path
+
+import trials
+from trials import Broken
 
 POLYGONS, HEXAHEDRA, CENTRES = "polygons", "hexahedra", "centres"
 HEADS = {
@@ -348,10 +345,6 @@ def emptied(_data, r):
 SAME_BYTES, ANY_BYTES = [mark, windows, blank_lines], [truncated, truncated, flipped, flipped, lost_lines, moved_lines, doubled_lines, emptied]
 
 
-class Broken(Exception):
-    """A violated guarantee."""
-
-
 class Reader:
     def __init__(self, program, folder):
         self.program, self.folder, self.known = program, folder, {}
@@ -362,9 +355,9 @@ class Reader:
         scenario = SCENARIO.format(head=HEADS[kind].replace("NAME", name))
         if name.endswith(NO_ARRAYS):
             scenario = scenario[: scenario.index("[region")]
-        (self.folder / "scenario.toml").write_text(scenario)
+        (self.folder / "draw.toml").write_text(scenario)
         try:
-            done = subprocess.run([self.program, "mesh", "scenario.toml", "--out", "rest.vtu", "--overwrite"], cwd=self.folder,
+            done = subprocess.run([self.program, "mesh", "draw.toml", "--out", "rest.vtu", "--overwrite"], cwd=self.folder,
                                   capture_output=True, encoding="utf-8", timeout=120, check=False)
         except subprocess.TimeoutExpired:
             raise Broken("waits forever") from None
@@ -424,7 +417,7 @@ def draw(reader, r):
     name = f"{form}, {damage.__name__}"
     good_quality, good_said = reader.good(kind, form)
     try:
-        status, quality, said, error = reader.read(kind, f"bad.{ending}", data)
+        status, quality, said, error = reader.read(kind, f"draw.{ending}", data)
         said_new = bool(said - good_said)
         if right == "same" and status != 0:
             raise Broken(f"refused, and it is the same tissue: {error}")
@@ -438,32 +431,13 @@ def draw(reader, r):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("program", type=Path)
-    parser.add_argument("--count", type=int, default=300)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0, help="number of the first file, to repeat one")
-    parser.add_argument("--keep", type=Path, default=Path("bad_files_failed"), help="folder for files that fail")
-    given = parser.parse_args()
-    counts = collections.Counter()
-    with tempfile.TemporaryDirectory(prefix="plica_bad_files_") as name:
-        folder = Path(name)
-        reader = Reader(given.program.resolve(), folder)
-        for number in range(given.first, given.first + given.count):
-            for left in folder.glob("bad.*"):
-                left.unlink()
-            try:
-                counts[draw(reader, random.Random(f"{given.seed}/{number}"))] += 1
-            except Broken as error:
-                counts["FAILED"] += 1
-                kept = given.keep / f"seed{given.seed}_{number}"
-                kept.mkdir(parents=True, exist_ok=True)
-                for file in [*folder.glob("bad.*"), folder / "scenario.toml"]:
-                    shutil.copy(file, kept)
-                print(f"file {number} of seed {given.seed}: {error}\n  kept in {kept}", flush=True)
-    for kind, count in counts.most_common():
-        print(f"{count:6} {kind}")
-    sys.exit(1 if counts["FAILED"] else 0)
+    given = trials.arguments(__doc__, "file", 300).parse_args()
+
+    def prepare(folder):
+        reader = Reader(given.program, folder)
+        return lambda r: draw(reader, r)
+
+    sys.exit(1 if trials.run(given, "file", prepare)["FAILED"] else 0)
 
 
 if __name__ == "__main__":

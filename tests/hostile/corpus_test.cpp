@@ -1,15 +1,10 @@
 // Replays fuzzer seeds (fuzz/corpus), also with changed bytes, and past findings (fuzz/found). Seeds must be of current
 // formats, and findings must stay fixed.
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <random>
-
 #include "core/files.hpp"
 #include "record/archive.hpp"
+#include "support/testing.hpp"
 #include "targets.hpp"
 
-namespace plica {
 namespace {
 
 namespace fs = std::filesystem;
@@ -72,4 +67,3 @@ TEST(FuzzCorpus, Checkpoints) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -12,32 +12,24 @@ Scenarios that violate this are kept. Scenario I of a seed does not depend on th
 
 Usage: random_scenarios.py PROGRAM [--count N] [--seed S] [--first I] [--keep DIR]
 """
-import argparse
-import collections
-import os
-import random
 import re
 import resource
 import shutil
 import signal
 import subprocess
 import sys
-import tempfile
-import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "app"))
 import support  # noqa: E402
+import trials  # noqa: E402
 from random_scenario import Drawer  # noqa: E402
 from scenario_table import read_table  # noqa: E402
+from trials import Broken  # noqa: E402
 
 LONGEST_WAIT_S = 600  # wall-clock limit, for a run that waits forever
 FAILED = re.compile(r"plica: solver failed: .*(cell \d+|whole surface).* at t = [\d.e+-]+ s(, with steps down to [\d.e+-]+ s)?; ")
 REFUSED = re.compile(r"(?P<where>[^:\n]+):(?:\d+: )?\s?(?P<key>[^:]*): (?P<problem>.+)")
-
-
-class Broken(Exception):
-    """A violated guarantee."""
 
 
 longest_s = 120  # CPU time of one run; the slowest takes 34 s on an idle machine
@@ -111,25 +103,24 @@ def judge(result, out):
 
 
 def repaired(drawer, scenario, chance):
-    """Remove rejected keys until `plica check` accepts the scenario, or stop early by chance; return the number of refusals."""
+    """Remove rejected keys until `plica check` accepts the scenario, or stop early by chance."""
     draft = drawer.draft
-    for refusals in range(8):
+    for _ in range(8):
         scenario.write_text(draft.text())
         result = plica("check", scenario)
         if result.returncode != 2:
-            return refusals
+            return
         keys = refused_keys(result)
         if chance.random() < 0.05:
-            return refusals
+            return
         for key in keys:
             # A missing key cannot be removed; remove its table.
             if not draft.drop(key):
                 draft.drop(key.rsplit(".", 1)[0])
         drawer.make_small()
-    return refusals
 
 
-def prepare(folder):
+def prepare_files(folder):
     """Write meshes and a run that scenarios may refer to."""
     files = {"base": ["drosophila"], "embryo.file": [], "embryo.apical_array": ["apical", "mother_id"],
              "region.array": ["cell_id", "generation"], "monitor.reference": []}
@@ -145,58 +136,28 @@ def prepare(folder):
     return files
 
 
-def run_one(number, seed, table, files, folder):
-    """Return the outcome of one scenario, the number of refusals before, and its time (s)."""
-    chance = random.Random(f"{seed}/{number}")
-    scenario, out = folder / "scenario.toml", folder / "out"
-    shutil.rmtree(out, ignore_errors=True)
-    drawer = Drawer(chance, *table, files)
-    drawer.draw()
-    refusals = repaired(drawer, scenario, chance)
-    started = time.monotonic()
-    kind = judge(plica("run", scenario, "--out", out, "--quiet"), out)
-    return kind, refusals, time.monotonic() - started
-
-
 def main():
     global longest_s
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("program", type=Path)
-    parser.add_argument("--count", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0, help="number of the first scenario, to repeat one")
-    parser.add_argument("--keep", type=Path, default=Path("random_scenarios_failed"), help="folder for scenarios that fail")
-    parser.add_argument("--longest", type=int, default=longest_s, metavar="S", help="CPU time of one run; "
-                        "sanitizers need far more")
+    parser = trials.arguments(__doc__, "scenario", 100)
+    parser.add_argument("--longest", type=int, default=longest_s, metavar="S", help="CPU time of one run; sanitizers need far more")
     given = parser.parse_args()
     longest_s = given.longest
-    support.PROGRAM = str(given.program.resolve())
-    table = read_table(support.PROGRAM)
-    counts, failures, refusals, slowest = collections.Counter(), 0, 0, (0, 0)
-    started = time.monotonic()
-    with tempfile.TemporaryDirectory(prefix="plica_random_") as name:
-        folder = Path(name)
-        files = prepare(folder)
-        for number in range(given.first, given.first + given.count):
-            try:
-                kind, refused, seconds = run_one(number, given.seed, table, files, folder)
-                refusals += refused
-                slowest = max(slowest, (seconds, number))
-            except Broken as error:
-                kind = "FAILED"
-                failures += 1
-                given.keep.mkdir(parents=True, exist_ok=True)
-                kept = given.keep / f"seed{given.seed}_{number}.toml"
-                shutil.copy(folder / "scenario.toml", kept)
-                print(f"scenario {number} of seed {given.seed}: {error}\n  kept in {kept}", flush=True)
-            counts[kind] += 1
-            if sum(counts.values()) % 100 == 0 and given.count > 100:
-                print(f"{sum(counts.values())} scenarios after {time.monotonic() - started:.0f} s", flush=True)
-    print(f"{given.count} scenarios of seed {given.seed} in {time.monotonic() - started:.0f} s; {refusals} refusals were "
-          f"repaired; the slowest took {slowest[0]:.1f} s (number {slowest[1]})")
-    for kind, count in counts.most_common():
-        print(f"{count:6} {kind}")
-    sys.exit(1 if failures else 0)
+    support.PROGRAM = str(given.program)
+
+    def prepare(folder):
+        table, files = read_table(support.PROGRAM), prepare_files(folder)
+        scenario, out = folder / "draw.toml", folder / "out"
+
+        def trial(chance):
+            shutil.rmtree(out, ignore_errors=True)
+            drawer = Drawer(chance, *table, files)
+            drawer.draw()
+            repaired(drawer, scenario, chance)
+            return judge(plica("run", scenario, "--out", out, "--quiet"), out)
+
+        return trial
+
+    sys.exit(1 if trials.run(given, "scenario", prepare)["FAILED"] else 0)
 
 
 if __name__ == "__main__":

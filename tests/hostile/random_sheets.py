@@ -12,28 +12,21 @@ A run that takes more than MOST_CPU_S of processor time crawls, which is a failu
 
 Usage: random_sheets.py PROGRAM [--count N] [--seed S] [--first I] [--keep DIR]
 """
-import argparse
-import collections
 import json
 import math
-import random
 import re
 import resource
 import shutil
 import signal
 import subprocess
 import sys
-import tempfile
-import time
-from pathlib import Path
+
+import trials
+from trials import Broken
 
 END_S = 180
 MOST_FAIL = 0.05
 MOST_CPU_S = 300
-
-
-class Broken(Exception):
-    """A violated guarantee."""
 
 
 def even(r, low, high):
@@ -42,7 +35,7 @@ def even(r, low, high):
 
 
 def draw(r):
-    """The text of one scenario and a name for its load."""
+    """The text of one scenario."""
     cells, width, height, modulus = round(even(r, 20, 2000)), even(r, 3, 12), even(r, 3, 40), even(r, 10, 3000)
     area, aspect = cells * width**2, even(r, 0.5, 2)
     length = math.sqrt(area * aspect)
@@ -87,7 +80,7 @@ end_s = {END_S}
 [output]
 frame_every_s = 0
 """
-    return text, f"{load}, {side}"
+    return text
 
 
 def limit_processor_time():
@@ -97,7 +90,7 @@ def limit_processor_time():
 
 def run(program, folder, text, *overrides):
     """Return the finished process, the summary and what was said."""
-    out, scenario = folder / "out", folder / "scenario.toml"
+    out, scenario = folder / "out", folder / "draw.toml"
     shutil.rmtree(out, ignore_errors=True)
     scenario.write_text(text)
     sets = [word for override in overrides for word in ("--set", override)]
@@ -140,42 +133,18 @@ def judge_remedies(program, folder, text, summary, said):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("program", type=Path)
-    parser.add_argument("--count", type=int, default=200)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--first", type=int, default=0, help="number of the first sheet, to repeat one")
-    parser.add_argument("--keep", type=Path, default=Path("random_sheets_failed"), help="folder for sheets that fail")
-    parser.add_argument("--verbose", action="store_true", help="one line per sheet")
-    given = parser.parse_args()
-    counts, failed, slowest, started = collections.Counter(), 0, (0, 0), time.monotonic()
-    with tempfile.TemporaryDirectory(prefix="plica_sheets_") as name:
-        folder = Path(name)
-        for number in range(given.first, given.first + given.count):
-            text, load = draw(random.Random(f"{given.seed}/{number}"))
-            begun = time.monotonic()
-            try:
-                done, summary, said = run(given.program.resolve(), folder, text)
-                slowest = max(slowest, (time.monotonic() - begun, number))
-                failed += done.returncode == 3
-                if done.returncode == 3:
-                    given.keep.mkdir(parents=True, exist_ok=True)
-                    (given.keep / f"seed{given.seed}_{number}_failed.toml").write_text(text)
-                kind = judge_end(summary, said) if done.returncode == 0 else judge_remedies(given.program.resolve(), folder, text, summary, said)
-            except Broken as error:
-                kind = "FAILED"
-                given.keep.mkdir(parents=True, exist_ok=True)
-                kept = given.keep / f"seed{given.seed}_{number}.toml"
-                kept.write_text(text)
-                print(f"sheet {number} of seed {given.seed}, {load}: {error}\n  kept in {kept}", flush=True)
-            counts[kind] += 1
-            if given.verbose:
-                print(f"{number:5} {time.monotonic() - begun:6.1f} s  {load:18} {kind}", flush=True)
-    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-    print(f"{given.count} sheets in {time.monotonic() - started:.0f} s ({usage.ru_utime:.0f} s of processor time), the slowest {slowest[0]:.0f} s (number {slowest[1]}); "
-          f"{failed} failed ({100 * failed / given.count:.1f} %)")
-    for kind, count in counts.most_common():
-        print(f"{count:6} {kind}")
+    given = trials.arguments(__doc__, "sheet", 200).parse_args()
+
+    def prepare(folder):
+        def trial(r):
+            text = draw(r)
+            done, summary, said = run(given.program, folder, text)
+            return judge_end(summary, said) if done.returncode == 0 else judge_remedies(given.program, folder, text, summary, said)
+
+        return trial
+
+    counts = trials.run(given, "sheet", prepare)
+    failed = sum(count for outcome, count in counts.items() if outcome.startswith("fails"))
     sys.exit(1 if counts["FAILED"] or failed > MOST_FAIL * given.count else 0)
 
 

@@ -1,13 +1,6 @@
 // A furrow that closes: sections, speeds, onset of fast invagination, fluid and contact.
 #include "measure/closing.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <set>
-#include <vector>
-
 #include "measure/cells.hpp"
 #include "measure/cross_section.hpp"
 #include "measure/speed_history.hpp"
@@ -17,12 +10,8 @@
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
 #include "support/models.hpp"
-#include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 // 0.5 um/min up to 6 um at 12 min, then 4 um/min; rows as uneven as those of a run.
 TEST(Knee, IsWhereTwoStraightLinesMeet) {
@@ -326,4 +315,3 @@ TEST(SpeedHistory, WhatNeverHappensHasNoValue) {
 }
 
 }  // namespace
-}  // namespace plica

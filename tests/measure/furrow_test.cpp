@@ -1,14 +1,6 @@
 // The furrow's depth and lips; columns of results, and the sets that a scenario measures.
 #include "measure/furrow.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <set>
-
-#include "core/errors.hpp"
 #include "measure/cell_columns.hpp"
 #include "measure/cells.hpp"
 #include "measure/columns.hpp"
@@ -16,13 +8,10 @@
 #include "measure/observation.hpp"
 #include "record/series_rows.hpp"
 #include "record/summary.hpp"
-#include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
 #include "support/prisms.hpp"
-#include "support/small_furrow.hpp"
-#include "tissue/shapes/embryo.hpp"
+#include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 /// The paper's Drosophila, its 14 x 5 contractile ventral cells, and what is measured of them.
@@ -148,7 +137,7 @@ TEST(Furrow, DepthIsTheShiftOfTheMiddle) {
 
 // A dimple of single faces is no furrow: the middles of polygons move and depth does not, but their corners count.
 TEST(Furrow, DepthIsWithoutDimples) {
-  const Tissue tissue = tissue_from_prisms(support::honeycomb(5, 5, 6, 12), PolygonSplit::kites, 1);
+  const Tissue tissue = tissue_from_prisms(honeycomb(5, 5, 6, 12), PolygonSplit::kites, 1);
   const CellSet all(tissue.cells.size(), true);
   const FurrowSites sites = choose_furrow_sites(tissue, all, 2);
   Vectors dimpled = tissue.rest_positions, lowered = tissue.rest_positions;
@@ -252,8 +241,7 @@ TEST(Furrow, WavinessIsWhatASmoothFloorLeaves) {
 // From the shell along any direction in y = 0: a sphere's chord, a pill's straight side and caps.
 TEST(Furrow, DepthInsideACapsuleIsTheWayOut) {
   const OuterShape sphere(Capsule{0, 10}), pill(Capsule{20, 10});
-  int cases = 0;
-  for (double angle = 0; angle < 6.28; angle += 0.1, ++cases) {
+  for (double angle = 0; angle < 6.28; angle += 0.1) {
     const Vec3 outward(std::sin(angle), 0, std::cos(angle)), across(outward.z(), 0, -outward.x());
     EXPECT_NEAR(sphere.depth(3 * outward + 6 * across, outward), 5, 1e-12);
     EXPECT_NEAR(sphere.depth(9 * outward + 6 * across, outward), -1, 1e-12);
@@ -261,39 +249,6 @@ TEST(Furrow, DepthInsideACapsuleIsTheWayOut) {
     const Vec3 from(7, 0, -4), out = from + pill.depth(from, outward) * outward;
     EXPECT_NEAR(Vec3(out.x() - std::clamp(out.x(), -20.0, 20.0), 0, out.z()).norm(), 10, 1e-9) << angle;
   }
-  EXPECT_EQ(cases, 63);
-}
-
-template <class Columns>
-void expect_named_and_explained(const Columns& columns, std::size_t at_least) {
-  std::set<std::string_view> names;
-  for (const auto& column : columns) {
-    EXPECT_TRUE(names.insert(column.name).second) << column.name << " twice";
-    EXPECT_TRUE(column.meaning.ends_with('.')) << column.name;
-    EXPECT_NE(measures_markdown().find("| `" + std::string(column.name) + "` |"), std::string::npos) << column.name;
-  }
-  EXPECT_GE(names.size(), at_least);
-}
-
-TEST(Columns, AreNamedOnceAndExplained) {
-  expect_named_and_explained(columns(), 29);
-  expect_named_and_explained(cell_columns(), 16);
-  expect_named_and_explained(node_columns(), 3);
-  expect_named_and_explained(midline_columns(), 5);
-  expect_named_and_explained(section_columns(), 11);
-  expect_named_and_explained(lineage_columns(), 4);
-}
-
-TEST(Columns, EachIsOfAStepOrOfTheRunAndGoesSomewhere) {
-  for (const Column& column : columns()) {
-    const bool of_run = column.in_summary == InSummary::whole_run;
-    EXPECT_EQ(static_cast<bool>(column.of_run), of_run) << column.name;
-    EXPECT_EQ(static_cast<bool>(column.of_step), !of_run) << column.name;
-    EXPECT_TRUE(column.in_series || column.in_summary != InSummary::nothing) << column.name;
-    EXPECT_FALSE(column.in_series && of_run) << column.name;
-  }
-  EXPECT_EQ(column_index("time_s"), 0U);
-  EXPECT_THROW((void)column_index("no such column"), std::logic_error);
 }
 
 // Three rows, of which the last lacks two values.
@@ -332,29 +287,13 @@ TEST(Columns, TheSummaryHasWhatTheRowSays) {
   EXPECT_FALSE(value("peak_speed_ratio"));
 }
 
-// Programs read these files: a column may be added, but none moved.
-TEST(Columns, ThoseOfTheContractStayInTheirOrder) {
-  std::string summary;
-  for (const Column* column : summary_columns(all_columns())) summary += std::string(column->name) + ' ';
-  EXPECT_TRUE(summary.starts_with(
-      "furrow_depth_um furrow_depth_below_lips_um lip_distance_um highest_points_distance_um vml_apical_area_ratio "
-      "vce_apical_area_ratio vml_displacement_um vce_displacement_um peak_speed_ratio peak_speed_ratio_time_s "
-      "ends_lead_until_s vml_displacement_at_equal_speed_um vce_displacement_at_equal_speed_um max_node_speed_um_per_s "
-      "max_volume_error max_shell_penetration_um min_scaled_jacobian lumen_volume_ratio newton_iterations "
-      "linear_iterations "))
-      << summary;
-  EXPECT_EQ(names_of(lineage_columns()), (std::vector<std::string>{"cell_id", "mother_id", "generation", "birth_s"}));
-}
-
 const std::string sheet =
-    "[embryo]\nshape = \"sheet\"\nlength_um = 40\nwidth_um = 40\ncell_count = 30\ncell_height_um = 10\n"
-    "[region.middle]\ny_um = [-8, 8]\n[cortex.pull]\nregion = \"middle\"\ntension_mN_per_m = 0.3\n";
+    "format = 1\n[embryo]\nshape = \"sheet\"\nlength_um = 40\nwidth_um = 40\ncell_count = 30\ncell_height_um = "
+    "10\n[region.middle]\ny_um = [-8, 8]\n[cortex.pull]\nregion = \"middle\"\ntension_mN_per_m = 0.3\n";
 const std::string organoid =
-    "[embryo]\nshape = \"sphere\"\ndiameter_um = 100\ncell_height_um = 15\ncells = [5, 5, 4]\naxes = [\"x\", \"y\", "
-    "\"z\"]\n"
-    "[vitelline]\nenabled = false\n[cortex.pull]\nregion = \"all\"\ntension_mN_per_m = 0.3\n";
-
-Scenario scenario_of(const std::string& text) { return load_scenario({"test", "test.toml", "format = 1\n" + text}); }
+    "format = 1\n[embryo]\nshape = \"sphere\"\ndiameter_um = 100\ncell_height_um = 15\ncells = [5, 5, 4]\naxes = "
+    "[\"x\", \"y\", "
+    "\"z\"]\n[vitelline]\nenabled = false\n[cortex.pull]\nregion = \"all\"\ntension_mN_per_m = 0.3\n";
 
 std::vector<std::string> sets_of(const Simulation& simulation) {
   std::vector<std::string> names;
@@ -367,9 +306,8 @@ TEST(MeasureSets, ATissueMeasuresWhatFitsIt) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(sets_of(Simulation(scenario_of(sheet))), (Names{"", "fold", "bending"}));
   EXPECT_EQ(sets_of(Simulation(scenario_of(organoid))), (Names{"", "lumen", "bending"}));
-  EXPECT_EQ(
-      sets_of(Simulation(scenario_of(support::small_furrow.substr(std::size("format = 1"))))),
-      (Names{"", "fold", "furrow", "contact", "closing", "lumen", "shell", "perivitelline", "flanks", "bending"}));
+  EXPECT_EQ(sets_of(Simulation(scenario_of(small_furrow))), (Names{"", "fold", "furrow", "contact", "closing", "lumen",
+                                                                   "shell", "perivitelline", "flanks", "bending"}));
   EXPECT_EQ(sets_of(Simulation(scenario_of(sheet + "[self_contact]\nsurface = \"apical\"\n"))),
             (Names{"", "fold", "contact", "bending"}));
 }
@@ -405,21 +343,14 @@ TEST(MeasureSets, AreThoseThatAreNamed) {
 }
 
 TEST(MeasureSets, OneThatDoesNotFitIsAnErrorWithARemedy) {
-  const auto refusal = [](const std::string& more) -> std::string {
-    try {
-      const Simulation simulation(scenario_of(sheet + more));
-    } catch (const ScenarioError& error) {
-      return error.what();
-    }
-    return "none";
+  const auto refusal = [](const std::string& more) {
+    return error_of<ScenarioError>([&] { return Simulation(scenario_of(sheet + more)); });
   };
-  EXPECT_NE(refusal("[measure]\nsets = [\"lumen\"]\n").find("measure.sets: \"lumen\" has nothing to measure"),
-            std::string::npos);
-  EXPECT_NE(refusal("[measure]\nsets = [\"furow\"]\n").find("automatic | fold | furrow"), std::string::npos);
+  EXPECT_SAYS(refusal("[measure]\nsets = [\"lumen\"]\n"), "measure.sets: \"lumen\" has nothing to measure");
+  EXPECT_SAYS(refusal("[measure]\nsets = [\"furow\"]\n"), "automatic | fold | furrow");
   const std::string expectation = "[expect]\nlip_distance_um = { value = 3, within = 1 }\n";
-  EXPECT_NE(refusal(expectation).find("expect.lip_distance_um: is not measured; add \"furrow\" to measure.sets"),
-            std::string::npos);
-  EXPECT_EQ(refusal(expectation + "[measure]\nsets = [\"automatic\", \"furrow\"]\n"), "none");
+  EXPECT_SAYS(refusal(expectation), "expect.lip_distance_um: is not measured; add \"furrow\" to measure.sets");
+  EXPECT_EQ(refusal(expectation + "[measure]\nsets = [\"automatic\", \"furrow\"]\n"), "");
 }
 
 // A set that is not chosen computes nothing; what is left has the same values.
@@ -431,4 +362,3 @@ TEST(MeasureSets, OthersChangeNothing) {
 }
 
 }  // namespace
-}  // namespace plica

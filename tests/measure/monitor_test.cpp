@@ -1,20 +1,11 @@
 // Monitors and the criteria that end a run by them.
 #include "measure/monitor.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iostream>
-
 #include "measure/stop_rule.hpp"
 #include "support/divided.hpp"
 #include "support/loads.hpp"
-#include "support/models.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 /// Three cells of 20 x 20 x 40 um along x; "left" is the first, nodes at x = -30 and -10.
 Model row_of_three() {
@@ -320,4 +311,3 @@ TEST(StopRule, CombinesCriteriaAndRest) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,13 +1,8 @@
 #include "mechanics/coulomb.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 TEST(Coulomb, IsTheLimitWhereItSlidesAndSmoothWhereItDoesNot) {
   const Coulomb friction{3};
@@ -32,4 +27,3 @@ TEST(Coulomb, IsTheLimitWhereItSlidesAndSmoothWhereItDoesNot) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,19 +1,13 @@
 // Division and growth of a model: what is continuous through a cut, and what daughters become.
 #include "mechanics/division.hpp"
 
-#include <gtest/gtest.h>
-
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
-#include "solver/linear/step_matrix.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/divided.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const BlockShape three_cells{.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}};
 const BlockShape sheet{.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}};
@@ -334,4 +328,3 @@ TEST(DividedSheet, AssemblesTheTangentOfItsFreeNodes) {
 }
 
 }  // namespace
-}  // namespace plica

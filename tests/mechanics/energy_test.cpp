@@ -2,12 +2,6 @@
 // order of what is missing.
 #include "mechanics/energy.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-#include <functional>
-
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/constraints/ties.hpp"
@@ -20,14 +14,10 @@
 #include "mechanics/surroundings.hpp"
 #include "simulation/simulation.hpp"
 #include "solver/step/newton_stepper.hpp"
-#include "support/block_scenario.hpp"
 #include "support/law_checks.hpp"
-#include "support/tissues.hpp"
+#include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 // The work of a law's forces on a straight way of length `size` that takes `size` seconds, by the forces midway, and
 // what the law says of it. Midway, what flows has flown for half of the time.
@@ -256,4 +246,3 @@ TEST(EnergyBalance, OfARunIsTheSumOfItsLaws) {
 }
 
 }  // namespace
-}  // namespace plica

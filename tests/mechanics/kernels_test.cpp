@@ -2,8 +2,6 @@
 // chunks of elements that they take at once.
 #include "mechanics/kernels/kernels.hpp"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
@@ -18,10 +16,7 @@
 #include "support/law_checks.hpp"
 #include "tissue/tissue.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const ElasticModuli moduli = ElasticModuli::from_young(1, 0.45);
 
@@ -275,4 +270,3 @@ TEST(ElementChunks, ThoseThatHangOnTheSameNodeAreNotTakenAtOnce) {
 }
 
 }  // namespace
-}  // namespace plica

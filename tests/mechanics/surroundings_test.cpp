@@ -1,13 +1,8 @@
 #include "mechanics/surroundings.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 TEST(SurfaceDrag, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 1);
@@ -122,4 +117,3 @@ TEST(FacePressure, OnAClosedSurfaceHasNoResultantAndNoTorque) {
 }
 
 }  // namespace
-}  // namespace plica

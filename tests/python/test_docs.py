@@ -7,11 +7,11 @@ import pytest
 ROOT = Path(__file__).parents[2]
 
 
-def run_blocks(page):
+def run_blocks(page, with_words=""):
     blocks = re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(encoding="utf-8"), re.M | re.S)
     assert blocks
     names: dict = {}
-    for block in blocks:
+    for block in (one for one in blocks if with_words in one):
         exec(compile(block, page, "exec"), names)
     return names
 
@@ -45,10 +45,7 @@ def test_readme(tmp_path, monkeypatch, capsys):
 def test_gallery(tmp_path, monkeypatch):
     """The rule of the gallery makes a wave of contraction from pole to pole."""
     monkeypatch.chdir(tmp_path)
-    blocks = re.findall(r"^```python\n(.*?)^```", (ROOT / "docs/gallery.md").read_text(encoding="utf-8"), re.M | re.S)
-    (block,) = (one for one in blocks if "import plica" in one)
-    names: dict = {}
-    exec(compile(block, "docs/gallery.md", "exec"), names)
+    names = run_blocks("docs/gallery.md", "import plica")
     begin_s, place_um = names["begin_s"], names["sim"].cell_data["x_um"]
     middle, end = (begin_s[abs(place_um - at) < 20].mean() for at in (0, 100))
     assert 60 < middle < end < 240

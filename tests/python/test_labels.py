@@ -7,13 +7,15 @@ import numpy as np
 import plica
 import pytest
 
-pytest.importorskip("skimage")
+skimage = pytest.importorskip("skimage")
+scipy = pytest.importorskip("scipy")  # which it needs
+from scipy import ndimage, spatial  # noqa: E402
+from skimage import measure, morphology, segmentation  # noqa: E402
 
 
 @functools.cache
 def voronoi(count, size, seed):
     """Labels of evened random points, and the points, by row and column."""
-    spatial = pytest.importorskip("scipy.spatial")
     points = np.random.default_rng(seed).uniform(0, size, (count, 2))
     pixels = np.stack(np.mgrid[:size, :size], axis=-1).reshape(-1, 2)
     for _ in range(4):
@@ -46,13 +48,10 @@ def same(one, other, px=0.0):
 
 
 def test_labels_give_back_voronoi_polygons():
-    pytest.importorskip("skimage")
-    from scipy.spatial import Voronoi, cKDTree
-
     size, um = 400, 0.25
     labels, seeds = voronoi_labels(150, size, 1)
     found = plica.polygons_of_labels(labels, um)
-    true = Voronoi(seeds)
+    true = spatial.Voronoi(seeds)
     rim = {*labels[0], *labels[-1], *labels[:, 0], *labels[:, -1]}
     assert set(found.cell_data["label"]) == set(range(1, 151)) - rim
     same = 0
@@ -61,7 +60,7 @@ def test_labels_give_back_voronoi_polygons():
         corners = um * np.column_stack([corners[:, 1], size - 1 - corners[:, 0]])
         ours = found.points[face][:, :2]
         # To 1.5 pixels: edges shorter than that are one corner.
-        assert max(cKDTree(ours).query(corners)[0].max(), cKDTree(corners).query(ours)[0].max()) < 1.5 * um
+        assert max(spatial.cKDTree(ours).query(corners)[0].max(), spatial.cKDTree(corners).query(ours)[0].max()) < 1.5 * um
         assert area == pytest.approx((labels == label).sum() * um**2, rel=0.06)
         x, y = ours.T
         assert (x * np.roll(y, -1) - np.roll(x, -1) * y).sum() > 0
@@ -73,7 +72,6 @@ def test_labels_give_back_voronoi_polygons():
 
 
 def test_lines_between_labels_are_shared_out():
-    segmentation = pytest.importorskip("skimage.segmentation")
     labels, _ = voronoi_labels(60, 300, 2)
     lines = labels.copy()
     lines[segmentation.find_boundaries(labels, mode="inner")] = 0
@@ -102,7 +100,6 @@ def test_lines_between_labels_are_shared_out():
     (np.ones((9, 9), int), 1, "no cell has three corners"),
 ])
 def test_bad_labels(image, um, said):
-    pytest.importorskip("skimage")
     with pytest.raises(ValueError, match=said):
         plica.polygons_of_labels(image, um)
 
@@ -170,17 +167,15 @@ def test_small_pieces_and_holes_are_given_to_their_surroundings():
 
 
 def test_a_cell_within_a_cell_is_refused():
-    ndimage = pytest.importorskip("scipy.ndimage")
     image = bricks()
     image[62:88, 62:85] = 99
     with pytest.raises(ValueError, match=r"hole in cell 23 \(598 pixels at row 62, column 62\) contains cell 99; ") as refused:
         plica.polygons_of_labels(image, 1)
-    exec(re.search(r"99; (.*) fills it", str(refused.value))[1], {"image": image, "scipy": __import__("scipy"), "n": ndimage})
+    exec(re.search(r"99; (.*) fills it", str(refused.value))[1], {"image": image, "scipy": scipy})
     assert same(plica.polygons_of_labels(image, 1), plica.polygons_of_labels(bricks(), 1))
 
 
 def test_cells_in_pieces_are_named():
-    measure = pytest.importorskip("skimage.measure")
     image = bricks()
     image[image == 22] = 34
     with pytest.raises(ValueError, match=r"cell 34 is in pieces, of 900 pixels at row 60, .*skimage.measure.label\(image, connectivity=1"):
@@ -195,8 +190,6 @@ def test_cells_in_pieces_are_named():
 @pytest.mark.parametrize("thickness", [1, 4])
 def test_outlines_are_labelled(thickness):
     """Lines of an image of two values are found, whichever value they have; the remark names the call that gives its labels."""
-    measure, morphology = (pytest.importorskip(f"skimage.{name}") for name in ("measure", "morphology"))
-    segmentation = pytest.importorskip("skimage.segmentation")
     lines = segmentation.find_boundaries(bricks(), mode="inner")
     lines = morphology.skeletonize(lines) if thickness == 1 else morphology.dilation(lines, np.ones((3, 3)))
     lines[:, [0, -1]] = lines[[0, -1]] = True  # as Tissue Analyzer draws them
@@ -208,7 +201,7 @@ def test_outlines_are_labelled(thickness):
         with pytest.warns(UserWarning, match="was taken for lines around") as told:
             assert same(plica.polygons_of_labels(image, 1), labelled)
         call = str(told[0].message).split("labels are those of ")[1]
-        names = {"image": image, "numpy": np, "skimage": __import__("skimage")}
+        names = {"image": image, "numpy": np, "skimage": skimage}
         assert set(labelled.cell_data["label"]) <= set(np.unique(eval(call, names)))
 
 
@@ -259,7 +252,6 @@ def test_openings_that_meet_at_a_point_are_parted(tmp_path):
 
 
 def test_a_thin_cell_is_refused_with_a_filter_that_helps():
-    skimage = pytest.importorskip("skimage")
     rng = np.random.default_rng(76)
     image = bricks(120, 20)
     image[np.isin(image, rng.choice(np.unique(image), 12))] = 0
@@ -267,7 +259,7 @@ def test_a_thin_cell_is_refused_with_a_filter_that_helps():
     image[tuple(at)] = rng.choice(np.unique(image), 400)
     with pytest.raises(ValueError, match="cell 44 is too thin or winding") as refused:
         quietly(image, keep_cut=True, keep="largest")
-    pytest.importorskip("skimage.filters.rank"), pytest.importorskip("skimage.morphology")
+    pytest.importorskip("skimage.filters.rank")
     filtered = eval(str(refused.value).split("smooth all: ")[1], {"image": image, "skimage": skimage})
     assert len(quietly(filtered, keep_cut=True, keep="largest")) == 28
 
@@ -298,8 +290,6 @@ def test_colours_become_labels_by_the_call_that_the_error_names():
 
 def test_damaged_images_become_a_tissue_or_an_error_with_a_remedy(tmp_path):
     """Lines, salt, missing cells, a region cut out, merged labels: plica accepts the polygons."""
-    ndimage = pytest.importorskip("scipy.ndimage")
-    segmentation = pytest.importorskip("skimage.segmentation")
     accepted = 0
     for seed in range(8):
         rng = np.random.default_rng(seed)

@@ -78,13 +78,6 @@ def test_forces_are_of_now():
     assert np.abs(sim.forces("cortex.top")[top, 0]) == pytest.approx(tension * np.sqrt(area) / 2, rel=1e-6)
 
 
-def test_any_number_of_threads(sim):
-    other = plica.Simulation(scenario(), threads=2)
-    sim.run()
-    other.run()
-    assert np.array_equal(sim.positions, other.positions)
-
-
 def test_arrays(sim):
     sim.run(until_min=0.2)
     nodes, elements, cells = len(sim.positions), len(sim.hexahedra), len(sim.pressures)

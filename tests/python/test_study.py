@@ -137,22 +137,10 @@ def test_as_an_array(table):
     assert dict(plica.Study(STUDY).to_xarray().sizes) == {"point": 8}
 
 
-@pytest.mark.parametrize(
-    "change, told",
-    [
-        (("young_modulus_Pa", "young_modulus"), "young_modulus_Pa"),
-        (("low = 400, high = 1200", "low = 1200, high = 400"), "empty range"),
-        (("low = 400, high = 1200", "low = 400"), "bounds"),
-        (("\"sobol\"", "\"sobbol\""), "use \"sobol\""),
-        (("points = 8", ""), "points"),
-        (("furrow_depth_um", "furrow_depth"), "nearest match"),
-        (("\"drosophila\"", "\"drosophil\""), "neither"),
-        (("[design]", "[desing]"), "nearest match"),
-        (("[set]", "[set]\n\"elasticity.young_modulus_Pa\" = 3"), "conflicts with .set."),
-        (("kind = \"sobol\"", "kind = \"grid\""), "points"),
-        (("seed = 3", "seed = 3\nreplicates = 4"), "nothing is random"),
-    ],
-)
+@pytest.mark.parametrize("change, told", [
+    (("young_modulus_Pa", "young_modulus"), "young_modulus_Pa"), (("\"sobol\"", "\"sobbol\""), "use \"sobol\""),
+    (("\"drosophila\"", "\"drosophil\""), "neither"), (("seed = 3", "seed = 3\nreplicates = 4"), "nothing is random"),
+])  # all others: StudyInput.WhatIsNoStudySaysWhere
 def test_what_is_no_study(change, told):
     with pytest.raises(plica.ScenarioError, match=told):
         plica.Study(STUDY.replace(*change))

@@ -2,34 +2,23 @@
 #include "record/checkpoint.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
 #include <zlib.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <iostream>
-#include <limits>
-
-#include "core/errors.hpp"
 #include "record/archive.hpp"
 #include "record/checkpoint_files.hpp"
-#include "scenario/load.hpp"
 #include "scenario/print.hpp"
-#include "scenario/setup.hpp"
 #include "simulation/simulation.hpp"
-#include "support/block_scenario.hpp"
 #include "support/checkpoint_fields.hpp"
+#include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::size_t trailer_bytes = 64;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 // A block whose cells divided once, after some steps.
 struct BlockRun {
@@ -38,10 +27,9 @@ struct BlockRun {
   std::vector<Checkpoint> checkpoints;  // after each step
 
   BlockRun() {
-    const Scenario scenario =
-        load_scenario(support::pulled_block(
-                          "[division.all]\nregion = \"all\"\nat_s = 2\n[stop.never]\nmonitor = \"all\"\nbelow = 1\n"),
-                      {"time.integrator=bdf2"});
+    const Scenario scenario = load_scenario(
+        pulled_block("[division.all]\nregion = \"all\"\nat_s = 2\n[stop.never]\nmonitor = \"all\"\nbelow = 1\n"),
+        {"time.integrator=bdf2"});
     at_rest = make_model(scenario);
     struct Keeper final : SimulationListener {
       Keeper(const Simulation& of, BlockRun& into) : simulation(of), run(into) {}
@@ -120,10 +108,9 @@ TEST_F(CheckpointTest, ComesBackAsItWas) {
 
 // Every member, each with a value that it does not have by itself: one that is forgotten comes back as it is by itself.
 TEST_F(CheckpointTest, EveryMemberComesBack) {
-  const Checkpoint before = support::marked(block_run().last());
-  const auto written = support::fields_of(before),
-             read = support::fields_of(read_checkpoint_bytes(checkpoint_bytes(before)));
-  const auto unmarked = support::fields_of(Checkpoint{});
+  const Checkpoint before = marked(block_run().last());
+  const auto written = fields_of(before), read = fields_of(read_checkpoint_bytes(checkpoint_bytes(before)));
+  const auto unmarked = fields_of(Checkpoint{});
   for (const auto& [field, numbers] : written) {
     EXPECT_NE(numbers, unmarked.at(field)) << field << " has no value of its own here";
     EXPECT_EQ(numbers, read.at(field)) << field;
@@ -196,7 +183,7 @@ TEST_F(CheckpointTest, DamageUnderARightChecksumIsRefusedOrHarmless) {
       const std::optional<Checkpoint> checkpoint = unless_refused(made_right(bytes));
       (checkpoint ? read : refused) += 1;
       if (!checkpoint) continue;
-      for (const auto& [field, numbers] : support::fields_of(*checkpoint))
+      for (const auto& [field, numbers] : fields_of(*checkpoint))
         EXPECT_TRUE(std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); })) << field << at;
       EXPECT_FALSE(checkpoint->record.rows.empty());
       (void)why_unfit(checkpoint->run, *block_run().model);
@@ -213,12 +200,7 @@ TEST_F(CheckpointTest, AnotherFormatIsNamed) {
   for (const char* format : {"1 ", "20", "0 "}) {
     std::string other = bytes;
     other.replace(bytes.size() - trailer_bytes + mark.size() - 2, 2, format);
-    try {
-      (void)read_checkpoint_bytes(other);
-      ADD_FAILURE() << format;
-    } catch (const FileError& error) {
-      EXPECT_NE(std::string(error.what()).find("format"), std::string::npos) << error.what();
-    }
+    EXPECT_SAYS(error_of<FileError>([&] { return read_checkpoint_bytes(other); }), "format");
   }
 }
 
@@ -227,17 +209,12 @@ TEST_F(CheckpointTest, RowsOfOtherColumnsAreNamed) {
   const std::size_t at = bytes.find("furrow_depth_um\n");
   ASSERT_NE(at, std::string::npos);
   bytes.replace(at, 15, "furrow_width_um");
-  try {
-    (void)read_checkpoint_bytes(made_right(bytes));
-    ADD_FAILURE();
-  } catch (const FileError& error) {
-    EXPECT_NE(std::string(error.what()).find("other columns"), std::string::npos) << error.what();
-  }
+  EXPECT_SAYS(error_of<FileError>([&] { return read_checkpoint_bytes(made_right(bytes)); }), "other columns");
 }
 
 // How long each list of internal states is stands beside all of their numbers.
 TEST_F(CheckpointTest, ListsThatDoNotAddUpAreRefused) {
-  const std::string bytes = checkpoint_bytes(support::marked(block_run().last()));
+  const std::string bytes = checkpoint_bytes(marked(block_run().last()));
   const auto lengths = [](std::array<int, 3> of) {
     return std::string(reinterpret_cast<const char*>(of.data()), sizeof(of));
   };
@@ -261,15 +238,15 @@ TEST_F(CheckpointTest, WhatIsNoNumberIsRefused) {
     EXPECT_TRUE(is_refused(checkpoint_bytes(bad))) << "case " << cases;
     ++cases;
   };
-  refused([](Checkpoint& c) { c.run.state.positions[5].y() = nan; });
+  refused([](Checkpoint& c) { c.run.state.positions[5].y() = no_number; });
   refused([](Checkpoint& c) { c.run.state.velocities[0].x() = std::numeric_limits<double>::infinity(); });
-  refused([](Checkpoint& c) { c.run.state.multipliers[2] = nan; });
-  refused([](Checkpoint& c) { c.run.state.time_s = nan; });
-  refused([](Checkpoint& c) { c.run.equilibrium_time_s = nan; });
+  refused([](Checkpoint& c) { c.run.state.multipliers[2] = no_number; });
+  refused([](Checkpoint& c) { c.run.state.time_s = no_number; });
+  refused([](Checkpoint& c) { c.run.equilibrium_time_s = no_number; });
   refused([](Checkpoint& c) { c.run.wanted_step_s = -std::numeric_limits<double>::infinity(); });
-  refused([](Checkpoint& c) { c.record.frame_times_s[1] = nan; });
-  refused([](Checkpoint& c) { c.record.rows[1].values[column_index("max_volume_error")] = nan; });
-  refused([](Checkpoint& c) { c.record.rows[1].monitors[0] = nan; });
+  refused([](Checkpoint& c) { c.record.frame_times_s[1] = no_number; });
+  refused([](Checkpoint& c) { c.record.rows[1].values[column_index("max_volume_error")] = no_number; });
+  refused([](Checkpoint& c) { c.record.rows[1].monitors[0] = no_number; });
   refused([](Checkpoint& c) { c.record.rows.clear(); });
   EXPECT_EQ(cases, 10);
 }
@@ -365,7 +342,7 @@ TEST_F(CheckpointFilesTest, TheOneBeforeIsTakenWhenTheNewestIsDamaged) {
   }
   write_file(newest, read_file(newest).substr(1));
   EXPECT_EQ(time_read(), steps[1].run.state.time_s);
-  EXPECT_NE(complaint.find(newest.string()), std::string::npos) << complaint;
+  EXPECT_SAYS(complaint, newest.string());
   fs::remove(newest);
   EXPECT_EQ(time_read(), steps[1].run.state.time_s) << "as after a kill between two renames";
   EXPECT_EQ(complaint, "");
@@ -405,4 +382,3 @@ TEST_F(CheckpointFilesTest, AfterADamagedOneTheGoodOneStays) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -2,25 +2,12 @@
 // trial.
 #include "record/results.hpp"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
 #include <zlib.h>
 
-#include <array>
 #include <bit>
-#include <cmath>
 #include <csignal>
-#include <cstdio>
-#include <fstream>
-#include <iostream>
-#include <limits>
 #include <new>
-#include <random>
-#include <set>
-#include <sstream>
-#include <vector>
 
-#include "core/errors.hpp"
 #include "core/files.hpp"
 #include "measure/furrow.hpp"
 #include "record/checkpoint.hpp"
@@ -29,25 +16,18 @@
 #include "record/outcome.hpp"
 #include "record/polygon_surface.hpp"
 #include "record/run_scenario.hpp"
-#include "scenario/load.hpp"
 #include "simulation/division_rules.hpp"
 #include "simulation/run_warnings.hpp"
 #include "support/own_folder.hpp"
 #include "support/prisms.hpp"
 #include "support/scenarios.hpp"
-#include "support/tissues.hpp"
 #include "tissue/faces.hpp"
-#include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
-
-using support::scenario_of;
-using namespace support;
 
 namespace fs = std::filesystem;
 
-class ResultsTest : public support::OwnFolder {};
+class ResultsTest : public OwnFolder {};
 
 TEST_F(ResultsTest, SeriesAtTimesOfRowsAndBetweenThem) {
   const Series series = read_series(write("series.csv", "time_s,a,b.c_um\n0,1,\n2,5,-1e-3\n4,,7\n"));
@@ -75,12 +55,7 @@ TEST_F(ResultsTest, WhatIsNoSeriesNamesItsLine) {
            {"time_s,a\n,0\n", ":2: time missing"},
        }) {
     const fs::path file = write("series.csv", text);
-    try {
-      (void)read_series(file);
-      ADD_FAILURE() << text;
-    } catch (const FileError& error) {
-      EXPECT_NE(std::string(error.what()).find(file.string() + part), std::string::npos) << error.what();
-    }
+    EXPECT_SAYS(error_of<FileError>([&] { return read_series(file); }), file.string() + part);
   }
 }
 
@@ -154,7 +129,7 @@ TEST(Deflater, WhatItCompressesZlibGivesBack) {
 }
 
 // A run of an earlier version continues as it began.
-class RunScenario : public support::OwnFolder {};
+class RunScenario : public OwnFolder {};
 
 TEST_F(RunScenario, StayAsARunBegan) {
   const std::string text = "[embryo]\nshape = \"sheet\"\n";
@@ -172,7 +147,7 @@ TEST_F(RunScenario, StayAsARunBegan) {
 using Json = nlohmann::ordered_json;
 
 const Tissue& sheet() {
-  static const Tissue tissue = support::distorted_block({60, 40, 10, {6, 4, 1}, {1, 1, 1}}, 1, 3);
+  static const Tissue tissue = distorted_block({60, 40, 10, {6, 4, 1}, {1, 1, 1}}, 1, 3);
   return tissue;
 }
 
@@ -234,12 +209,7 @@ TEST(Outcome, TellsOfSelfIntersectionsWithTheirRemedy) {
 
 // What the FileError says that comes out; nothing when none does.
 std::string complaint(const std::function<void()>& read) {
-  try {
-    read_on_trial(read, 0);
-    return "";
-  } catch (const FileError& error) {
-    return error.what();
-  }
+  return error_of<FileError>([&] { read_on_trial(read, 0); });
 }
 
 TEST(ReadingTrial, LetsErrorsOut) {
@@ -396,4 +366,3 @@ TEST(SurfaceMesh, WhatIsDamagedIsRefused) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,18 +1,10 @@
 // Warnings and notes of `plica check` and `plica run`, and the remedies that they name: each is tried.
 #include "scenario/advice.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
-#include "core/errors.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
-#include "scenario/load.hpp"
-#include "scenario/setup.hpp"
-#include "support/named_remedies.hpp"
+#include "support/scenarios.hpp"
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
 // Returns the advice on a mesh file whose cells form a block of that size; no file is read.
@@ -39,8 +31,8 @@ TEST(Advice, AMeshThatLiesAcrossTheShellIsWarnedOf) {
     const auto warnings = lines_with("the mesh is longest along", advice_on_mesh(size_um));
     ASSERT_EQ(warnings.size(), 1U) << axis;
     EXPECT_TRUE(warnings[0].starts_with("warning: ")) << warnings[0];
-    EXPECT_NE(warnings[0].find(axis), std::string::npos) << warnings[0];
-    EXPECT_NE(warnings[0].find("rotate the mesh"), std::string::npos) << warnings[0];
+    EXPECT_SAYS(warnings[0], axis);
+    EXPECT_SAYS(warnings[0], "rotate the mesh");
   }
 }
 
@@ -55,9 +47,9 @@ TEST(Advice, AMeshThatLiesAlongTheShellIsNot) {
 
 // A misspelt name in an inherited table defines a new table without effect.
 TEST(Advice, WhatDoesNothingIsTold) {
-  const Scenario scenario = load_scenario({"typo", "typo.toml",
-                                           "base = \"drosophila\"\n[region.furow]\nx_um = [0, 50]\n"
-                                           "[contraction.apicl]\nregion = \"all\"\n"});
+  const Scenario scenario =
+      load_scenario({"typo", "typo.toml",
+                     "base = \"drosophila\"\n[region.furow]\nx_um = [0, 50]\n[contraction.apicl]\nregion = \"all\"\n"});
   const auto lines = advice(scenario, *make_model(scenario));
   EXPECT_EQ(lines_with("region.furow: no table uses this region", lines).size(), 1U);
   EXPECT_EQ(lines_with("contraction.apicl: has no effect, since stiffness", lines).size(), 1U);
@@ -99,7 +91,7 @@ TEST(Advice, AConstantTensionThatEndsAbruptlyIsToldWithAProfileThatDoesNot) {
     const std::string before = "refinement; set ", after = ".profile = ";
     const std::size_t begin = lines[0].find(before), middle = lines[0].find(after);
     ASSERT_LT(middle, lines[0].size()) << lines[0];
-    EXPECT_NE(lines[0].find(axis), std::string::npos) << lines[0];
+    EXPECT_SAYS(lines[0], axis);
     // The remedy, as it stands.
     const std::string profile = "profile = " + lines[0].substr(middle + after.size()) + "\n";
     EXPECT_TRUE(advice_on_stripe(region, table + "\n" + profile).empty()) << lines[0].substr(begin);
@@ -112,8 +104,7 @@ TEST(Advice, AConstantTensionThatEndsAbruptlyIsToldWithAProfileThatDoesNot) {
 // The key is one that the scenario has, and it ends the note.
 TEST(Advice, OneElementThroughTheHeightIsTold) {
   const std::string stripe =
-      "[region.stripe]\ny_um = [-12, 12]\n[contraction.apical]\nregion = \"stripe\"\n"
-      "stiffness_nN_per_um = 1\n";
+      "[region.stripe]\ny_um = [-12, 12]\n[contraction.apical]\nregion = \"stripe\"\nstiffness_nN_per_um = 1\n";
   for (const auto& [shape, key] : {std::pair("sheet\"\ncell_count = 50\n", "embryo.layers = 2"),
                                    {"block\"\ncells = [5, 8, 1]\n", "embryo.elements_per_cell = [1, 1, 2]"}}) {
     const std::string text = "format = 1\n[embryo]\nlength_um = 30\nwidth_um = 50\ncell_height_um = 12\nshape = \"" +
@@ -123,7 +114,7 @@ TEST(Advice, OneElementThroughTheHeightIsTold) {
       return lines_with("one element through the height", advice(scenario, *make_model(scenario)));
     };
     ASSERT_EQ(lines({}).size(), 1U) << shape;
-    EXPECT_NE(lines({})[0].find(key), std::string::npos) << lines({})[0];
+    EXPECT_SAYS(lines({})[0], key);
     EXPECT_TRUE(lines({key}).empty()) << key;
     EXPECT_TRUE(lines({"elasticity.model=neo-hookean"}).empty());
   }
@@ -138,13 +129,7 @@ TEST(Advice, BuiltInTensionsEndSoftly) {
 
 // A sheet has a fold, and no lips.
 TEST(Advice, WordsFitTheTissue) {
-  const Scenario scenario = load_scenario({"flat", "flat.toml", R"([embryo]
-shape = "sheet"
-length_um = 60
-width_um = 60
-cell_count = 60
-cell_height_um = 10
-[region.side]
+  const Scenario scenario = load_scenario({"flat", "flat.toml", sheet_table(60, 60, 10, 60) + R"([region.side]
 y_um = [10, 25]
 [contraction.apical]
 region = "side"
@@ -152,14 +137,14 @@ stiffness_nN_per_um = 1
 )"});
   const auto lines = lines_with("does not intersect the plane y = 0", advice(scenario, *make_model(scenario)));
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_NE(lines[0].find("so the fold depth has no value; use [monitor.NAME]"), std::string::npos) << lines[0];
+  EXPECT_SAYS(lines[0], "so the fold depth has no value; use [monitor.NAME]");
 }
 
 using Overrides = std::vector<std::string>;
 
 const std::string row =
-    "[embryo]\nshape = \"block\"\nlength_um = 60\nwidth_um = 20\ncells = [3, 1, 1]\n[region.one]\nids = [1]\n"
-    "[region.two]\nids = [2]\n[time]\nend_s = 60\n";
+    "[embryo]\nshape = \"block\"\nlength_um = 60\nwidth_um = 20\ncells = [3, 1, 1]\n[region.one]\nids = "
+    "[1]\n[region.two]\nids = [2]\n[time]\nend_s = 60\n";
 const std::string pull = "[contraction.c]\nregion = \"one\"\nstiffness_nN_per_um = 1\n";
 const std::string sheet = "[embryo]\nshape = \"sheet\"\nlength_um = 30\nwidth_um = 30\ncell_count = 20\n";
 const std::string division = "[division.cut]\nregion = \"all\"\nat_s = 5\n";
@@ -221,8 +206,8 @@ const std::vector<AdviceCase> cases = {
     {row + "[elasticity]\nmodel = \"neo-hookean\"\n", "neo-hookean cells of one element"},
     {row + "[elasticity]\nmodel = \"neo-hookean\"\nrelaxation_s = 60\n", "neo-hookean cells of one element"},
     {row + "[elasticity]\nmodel = \"neo-hookean\"\n" + division, "neo-hookean cells of one element"},
-    {sheet + "[contraction.c]\nregion = \"all\"\nstiffness_nN_per_um = 1\n[cortex.x]\nregion = \"all\"\n"
-             "tension_mN_per_m = 1\n",
+    {sheet + "[contraction.c]\nregion = \"all\"\nstiffness_nN_per_um = 1\n[cortex.x]\nregion = "
+             "\"all\"\ntension_mN_per_m = 1\n",
      "forces act in full from t = 0"},
 };
 
@@ -230,7 +215,7 @@ std::vector<std::string> advice_with(const AdviceCase& one, const Overrides& ove
   Overrides all;
   if (one.phrase.starts_with("time step is longer")) all.emplace_back("time.step_s=300");
   all.insert(all.end(), overrides.begin(), overrides.end());
-  const Scenario scenario = load_scenario({"test", "test.toml", one.text}, all);
+  const Scenario scenario = scenario_of(one.text, all);
   std::vector<std::string> lines = advice(scenario, *make_model(scenario));
   std::erase_if(lines, [&](const std::string& line) { return line.find(one.phrase) == std::string::npos; });
   return lines;
@@ -242,7 +227,7 @@ TEST(AdviceRemedies, EachEndsItsMessage) {
     SCOPED_TRACE(one.text);
     const std::vector<std::string> lines = advice_with(one, {});
     ASSERT_EQ(lines.size(), 1U);
-    const auto remedies = one.remedies.empty() ? support::named_remedies(lines[0]) : one.remedies;
+    const auto remedies = one.remedies.empty() ? named_remedies(lines[0]) : one.remedies;
     EXPECT_FALSE(remedies.empty()) << lines[0];
     for (const Overrides& remedy : remedies) {
       EXPECT_EQ(advice_with(one, remedy), std::vector<std::string>()) << remedy.front();
@@ -275,4 +260,3 @@ TEST(AdviceRemedies, CellsThatCannotDivideNameKeysOfTheirShape) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,27 +1,13 @@
 // Keys of files (meshes, points, bases), of sheets and embryos of polygons, and of periods.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <numbers>
-#include <sstream>
-
 #include "core/files.hpp"
 #include "scenario/advice.hpp"
-#include "scenario/load.hpp"
-#include "scenario/setup.hpp"
 #include "support/own_folder.hpp"
 #include "support/scenarios.hpp"
 #include "tissue/faces.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 class FileKeys : public OwnFolder {
  protected:
@@ -52,10 +38,10 @@ class FileKeys : public OwnFolder {
            "\"\ncell_height_um = 10\n" + keys;
   }
 
-  static Tissue tissue(const std::string& text) { return make_tissue(load_scenario({"test", "test.toml", text})); }
+  static Tissue tissue(const std::string& text) { return make_tissue(scenario_of(text)); }
 
   static std::string advice_on(const std::string& text) {
-    const Scenario scenario = load_scenario({"test", "test.toml", text});
+    const Scenario scenario = scenario_of(text);
     std::string lines;
     for (const std::string& line : advice(scenario, *make_model(scenario))) lines += line + '\n';
     return lines;
@@ -69,12 +55,12 @@ TEST_F(FileKeys, AWrongUnitIsWarnedOfAndTheScaleNamedHelps) {
                                        {400.0, "[0.01, 0.01, 0.01]"}}) {
     write_squares(size_um);
     const std::string said = advice_on(squares());
-    EXPECT_NE(said.find("warning: embryo.scale: cells of the file are "), std::string::npos) << said;
-    EXPECT_NE(said.find(std::string("set embryo.scale = ") + scale), std::string::npos) << said;
-    EXPECT_EQ(advice_on(squares("scale = " + std::string(scale) + "\n")).find("embryo.scale"), std::string::npos);
+    EXPECT_SAYS(said, "warning: embryo.scale: cells of the file are ");
+    EXPECT_SAYS(said, std::string("set embryo.scale = ") + scale);
+    EXPECT_SAYS_NOT(advice_on(squares("scale = " + std::string(scale) + "\n")), "embryo.scale");
   }
   write_squares(10);
-  EXPECT_EQ(advice_on(squares()).find("embryo.scale"), std::string::npos);
+  EXPECT_SAYS_NOT(advice_on(squares()), "embryo.scale");
 }
 
 TEST_F(FileKeys, EveryShapeIsScaledThenTurnedThenCentred) {
@@ -102,9 +88,7 @@ TEST_F(FileKeys, EveryShapeIsScaledThenTurnedThenCentred) {
     const Vec3& before = block.rest_positions[n];
     EXPECT_LT((moved.rest_positions[n] - Vec3(-before.y(), 2 * before.x(), before.z())).norm(), 1e-9);
   }
-  EXPECT_NE(
-      model_errors(squares("rotate_deg = [90]\n")).find("embryo.rotate_deg: has length 1; set rotate_deg to three"),
-      std::string::npos);
+  EXPECT_SAYS(model_errors(squares("rotate_deg = [90]\n")), "embryo.rotate_deg: has length 1; set rotate_deg to three");
 }
 
 TEST_F(FileKeys, PointsAreTurnedAndCentredToo) {
@@ -126,10 +110,8 @@ TEST_F(FileKeys, PointsAreTurnedAndCentredToo) {
 TEST_F(FileKeys, PiecesAreNamedAndTheLargestIsKept) {
   write_squares(10, "1 2 3", true);
   const std::string said = model_errors(squares());
-  EXPECT_NE(said.find("the surface is not one piece but 2 pieces of 3 and 1 cells; face 3 at (75, 5, 0) um is joined"),
-            std::string::npos)
-      << said;
-  EXPECT_NE(said.find("set embryo.keep = \"largest\""), std::string::npos);
+  EXPECT_SAYS(said, "the surface is not one piece but 2 pieces of 3 and 1 cells; face 3 at (75, 5, 0) um is joined");
+  EXPECT_SAYS(said, "set embryo.keep = \"largest\"");
   const Tissue kept = tissue(squares("keep = \"largest\"\n[region.r]\narray = \"gene\"\nabove = 1.5\n"));
   EXPECT_EQ(kept.cells.size(), 3U);
   EXPECT_EQ(kept.cell_arrays.at("gene"), (CellArray{1, 2, 3}));
@@ -148,12 +130,9 @@ TEST_F(FileKeys, CellsWithoutAValueBelongToNoRegionAndNoProfile) {
   const std::string acts =
       "[contraction.c]\nregion = \"all\"\nstiffness_nN_per_um = 1\nprofile = { shape = \"array\", array = \"gene\", "
       "from = 0, to = 1 }\n";
-  EXPECT_NE(model_errors(squares(acts)).find("profile.array: array \"gene\" has no value in cell 1 at (15, 5, -5) um"),
-            std::string::npos)
-      << model_errors(squares(acts));
-  EXPECT_NE(model_errors(squares("cell_height_array = \"gene\"\n"))
-                .find("embryo.cell_height_array: array \"gene\" has no value in face 1"),
-            std::string::npos);
+  EXPECT_SAYS(model_errors(squares(acts)), "profile.array: array \"gene\" has no value in cell 1 at (15, 5, -5) um");
+  EXPECT_SAYS(model_errors(squares("cell_height_array = \"gene\"\n")),
+              "embryo.cell_height_array: array \"gene\" has no value in face 1");
 }
 
 TEST_F(FileKeys, CellsAndRegionsThatDoNotExistAreErrors) {
@@ -163,35 +142,31 @@ TEST_F(FileKeys, CellsAndRegionsThatDoNotExistAreErrors) {
   for (const std::string& text : {squares(), sheet}) {
     const std::string last = text == sheet ? "11" : "2";
     const std::string said = model_errors(text + "[region.r]\nids = [0, 99]\n");
-    EXPECT_NE(said.find("region.r.ids: cell 99 does not exist; set ids to numbers from 0 to " + last),
-              std::string::npos)
-        << said;
+    EXPECT_SAYS(said, "region.r.ids: cell 99 does not exist; set ids to numbers from 0 to " + last);
     EXPECT_EQ(model_errors(text + "[region.r]\nids = [0, " + last + "]\n"), "");
   }
   const std::string acts = "[contraction.c]\nregion = \"gene\"\nstiffness_nN_per_um = 1\n";
   const std::string said = model_errors(squares(acts));
-  EXPECT_NE(said.find("region \"gene\" does not exist"), std::string::npos) << said;
-  EXPECT_NE(said.find("add [region.gene] with array = \"gene\""), std::string::npos) << said;
+  EXPECT_SAYS(said, "region \"gene\" does not exist");
+  EXPECT_SAYS(said, "add [region.gene] with array = \"gene\"");
   EXPECT_EQ(model_errors(squares(acts + "[region.gene]\narray = \"gene\"\n")), "");
 }
 
 // Three cells of two triangles each about one point.
 TEST_F(FileKeys, TrianglesOfOneLabelAreACell) {
-  write_file(folder / "a.ply",
-             "ply\nformat ascii 1.0\nelement vertex 7\nproperty double x\nproperty double y\nproperty double z\n"
-             "element face 6\nproperty list int int vertex_indices\nproperty int label\nend_header\n"
-             "0 0 0\n10 0 0\n5 8.7 0\n-5 8.7 0\n-10 0 0\n-5 -8.7 0\n5 -8.7 0\n"
-             "3 0 1 2 7\n3 0 2 3 7\n3 0 3 4 3\n3 0 4 5 3\n3 0 5 6 5\n3 0 6 1 5\n");
+  write_file(
+      folder / "a.ply",
+      "ply\nformat ascii 1.0\nelement vertex 7\nproperty double x\nproperty double y\nproperty double z\nelement face "
+      "6\nproperty list int int vertex_indices\nproperty int label\nend_header\n0 0 0\n10 0 0\n5 8.7 0\n-5 8.7 0\n-10 "
+      "0 0\n-5 -8.7 0\n5 -8.7 0\n3 0 1 2 7\n3 0 2 3 7\n3 0 3 4 3\n3 0 4 5 3\n3 0 5 6 5\n3 0 6 1 5\n");
   const Tissue made = tissue(squares("mend = false\nlabel_array = \"label\"\n"));
   EXPECT_EQ(made.cell_arrays.at("label"), (CellArray{3, 5, 7}));
   for (const Cell& cell : made.cells) EXPECT_EQ(cell.sides(), 3U);
   const std::string said = advice_on(squares("mend = false\n"));
-  EXPECT_NE(said.find("note: its 6 faces are triangles with 3 values of \"label\"; if these number the cells, set "
-                      "embryo.label_array = \"label\""),
-            std::string::npos)
-      << said;
-  EXPECT_NE(model_errors(squares("label_array = \"cell\"\n")).find("no array \"cell\" of its faces; there are: label"),
-            std::string::npos);
+  EXPECT_SAYS(said,
+              "note: its 6 faces are triangles with 3 values of \"label\"; if these number the cells, set "
+              "embryo.label_array = \"label\"");
+  EXPECT_SAYS(model_errors(squares("label_array = \"cell\"\n")), "no array \"cell\" of its faces; there are: label");
 }
 
 class LoadFiles : public OwnFolder {
@@ -251,9 +226,9 @@ TEST_F(LoadFiles, FindsMeshesBesideTheFileThatNamesThem) {
 }
 
 TEST(PolygonKeys, RegionsByAngleAndLength) {
-  const Scenario scenario = load_scenario({"test", "test.toml",
-                                           egg + "[region.belly]\nangle_deg = [-40, 60]\nlength_percent = [25, "
-                                                 "80]\n[region.rest]\nunion = [\"all\"]\nexcept = [\"belly\"]\n"});
+  const Scenario scenario = scenario_of(egg +
+                                        "[region.belly]\nangle_deg = [-40, 60]\nlength_percent = [25, "
+                                        "80]\n[region.rest]\nunion = [\"all\"]\nexcept = [\"belly\"]\n");
   const Tissue tissue = make_tissue(scenario);
   int inside = 0;
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
@@ -270,10 +245,7 @@ TEST(PolygonKeys, RegionsByAngleAndLength) {
   EXPECT_GT(inside, 20);
 }
 
-TEST(PolygonKeys, RegionsOfMeasuredArrays) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / ("plica_points_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+TEST_F(FileKeys, RegionsOfMeasuredArrays) {
   const std::string table = numbered_points("gene");
   write_file(folder / "points.csv", table);
   const std::string points = "format = 1\n[embryo]\nshape = \"points\"\nfile = \"points.csv\"\ncell_height_um = 15\n";
@@ -291,7 +263,6 @@ TEST(PolygonKeys, RegionsOfMeasuredArrays) {
   EXPECT_THROW(tissue_of("[region.r]\narray = \"other\"\n"), ScenarioError);
   write_file(folder / "points.csv", table + "0,0,61,1\n0,0,61,1\n");
   EXPECT_THROW(tissue_of(""), ScenarioError);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(PolygonKeys, AHeldRimIsHeldAndNothingElse) {
@@ -330,16 +301,13 @@ TEST(PolygonKeys, ARegionSelectedAnewDropsWhatAnotherShapeSelectedItBy) {
   const std::string inherited = model_errors(base + shape),
                     own = model_errors(base + shape + belly + "face = \"left\"\n");
   EXPECT_TRUE(inherited.starts_with("drosophila:")) << inherited;
-  EXPECT_NE(inherited.find("region.furrow.face: cells of this shape have no named faces; use angle_deg, "),
-            std::string::npos);
-  EXPECT_NE(inherited.find("a new selector in [region.furrow] replaces the inherited face"), std::string::npos);
+  EXPECT_SAYS(inherited, "region.furrow.face: cells of this shape have no named faces; use angle_deg, ");
+  EXPECT_SAYS(inherited, "a new selector in [region.furrow] replaces the inherited face");
   EXPECT_EQ(own.find("test.toml:7: region.furrow.face: cells of this shape"), 0U) << own;
 }
 
 TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
-  const auto expect = [](const std::string& text, const std::string& said) {
-    EXPECT_NE(model_errors(text).find(said), std::string::npos) << model_errors(text);
-  };
+  const auto expect = [](const std::string& text, const std::string& said) { EXPECT_SAYS(model_errors(text), said); };
   expect("format = 1\n[embryo]\nshape = \"points\"\n", "embryo.file: is missing; set file to the table of points");
   expect("format = 1\n[embryo]\nshape = \"points\"\nfile = \"nowhere.csv\"\n", "embryo.file: ");
   expect("format = 1\n[embryo]\nshape = \"points\"\nfile = \"builtin:mouse\"\n",
@@ -368,49 +336,38 @@ TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
          "test.toml:9: time.scheme: the paper's algorithm supports four-sided cells only");
 }
 
-const std::string sheet = R"([embryo]
-shape = "sheet"
-length_um = 60
-width_um = 50
-cell_count = 60
-cell_height_um = 10
-)";
+const std::string sheet = sheet_table(60, 50, 10, 60);
 
 std::unique_ptr<Model> model_of(const std::string& text) { return make_model(scenario_of(text)); }
 
 TEST(PeriodicKeys, WhatDoesNotGoWithThemIsRefused) {
   const std::string both = sheet + "periodic = [\"x\", \"y\"]\n", along = sheet + "periodic = [\"x\"]\n";
   const WrongScenarios cases = {
-      {sheet + "periodic = [\"z\"]",
-       "test.toml:7: embryo.periodic: \"z\" is unknown; set periodic to a list of: x | y"},
-      {sheet + "periodic = [\"x\", \"x\"]",
-       "test.toml:7: embryo.periodic: \"x\" occurs twice; list each direction once"},
+      {sheet + "periodic = [\"z\"]", "7: embryo.periodic: \"z\" is unknown; set periodic to a list of: x | y"},
+      {sheet + "periodic = [\"x\", \"x\"]", "7: embryo.periodic: \"x\" occurs twice; list each direction once"},
       {"[embryo]\nshape = \"egg\"\nperiodic = [\"x\"]",
-       "test.toml:3: embryo.periodic: is not used with shape \"egg\"; remove periodic, or set shape to sheet"},
+       "3: embryo.periodic: is not used with shape \"egg\"; remove periodic, or set shape to sheet"},
       {along + "curvature_per_um = [0.004, 0.004]",
-       "test.toml:8: embryo.curvature_per_um: a sheet curved along x cannot be periodic along x; set its curvature "
-       "there to 0, or remove \"x\" from embryo.periodic"},
+       "8: embryo.curvature_per_um: a sheet curved along x cannot be periodic along x; set its curvature there to 0, "
+       "or remove \"x\" from embryo.periodic"},
       {both + "rim = \"held\"",
-       "test.toml:8: embryo.rim: a sheet periodic along x and y has no boundary; remove rim, or one direction of "
+       "8: embryo.rim: a sheet periodic along x and y has no boundary; remove rim, or one direction of "
        "embryo.periodic"},
       {along + "[division.a]\nregion = \"all\"\nat_s = 5",
-       "test.toml:7: embryo.periodic: cells of a periodic sheet cannot divide; remove periodic, or [division]"},
+       "7: embryo.periodic: cells of a periodic sheet cannot divide; remove periodic, or [division]"},
       {along + "mirror = [\"y\"]",
-       "test.toml:8: embryo.mirror: a periodic sheet cannot be reduced to one side; remove it, or embryo.periodic"},
+       "8: embryo.mirror: a periodic sheet cannot be reduced to one side; remove it, or embryo.periodic"},
       {along + "[volume]\nmethod = \"projection\"",
-       "test.toml:7: embryo.periodic: the paper's algorithm does not support periodic sheets; remove periodic, or set "
+       "7: embryo.periodic: the paper's algorithm does not support periodic sheets; remove periodic, or set "
        "time.scheme to \"newton\" and volume.method to \"coupled\" or \"none\""},
       {both + "[enclosed.yolk]\nvolume = \"held\"",
-       "test.toml:8: enclosed.yolk: a sheet encloses no volume; remove the table, or set embryo.shape to \"pill\" or "
-       "\"sphere\""},
+       "8: enclosed.yolk: a sheet encloses no volume; remove the table, or set embryo.shape to \"pill\" or \"sphere\""},
   };
   expect_errors(cases, side_errors);
   const std::string few = side_errors(
       "[embryo]\nshape = \"sheet\"\nlength_um = 10\nwidth_um = 90\ncell_count = 20\ncell_height_um = 9\nperiodic = "
       "[\"x\"]");
-  EXPECT_NE(few.find("across the period; lengthen the period, or give more cells (about four along it)"),
-            std::string::npos)
-      << few;
+  EXPECT_SAYS(few, "across the period; lengthen the period, or give more cells (about four along it)");
 }
 
 TEST(PeriodicKeys, ThePartsOfTheRimThatAreLeftAreHeld) {
@@ -449,4 +406,3 @@ TEST(PeriodicKeys, RegionsReachAcrossTheEnd) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,100 +1,81 @@
 // Keys of [cortex.NAME], and of the interior of cells: moduli, flow.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "measure/monitor.hpp"
-#include "record/archive.hpp"
-#include "record/checkpoint.hpp"
 #include "scenario/advice.hpp"
-#include "scenario/load.hpp"
-#include "scenario/setup.hpp"
-#include "simulation/simulation.hpp"
-#include "support/block_scenario.hpp"
+#include "support/resumed.hpp"
 #include "support/scenarios.hpp"
-#include "support/small_furrow.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const std::string cortex = "[cortex.a]\nregion = \"all\"\n";
 
 TEST(CortexKeys, SayWhatWouldBeRight) {
   const WrongScenarios cases = {
-      {cortex, "test.toml:1: cortex.a: has no effect; set tension_mN_per_m, stiffness_mN_per_m or crowding_mN_per_m"},
+      {cortex, "1: cortex.a: has no effect; set tension_mN_per_m, stiffness_mN_per_m or crowding_mN_per_m"},
       {cortex + "stiffness_mN_per_m = 1\nsaturation_ratio = 0.2",
-       "test.toml:4: cortex.a.saturation_ratio: is not used without tension_mN_per_m; remove it, or set "
-       "tension_mN_per_m"},
+       "4: cortex.a.saturation_ratio: is not used without tension_mN_per_m; remove it, or set tension_mN_per_m"},
       {cortex + "tension_mN_per_m = 1\ncompression_ratio = 0.1",
-       "test.toml:4: cortex.a.compression_ratio: is not used without stiffness_mN_per_m; remove it, or set "
-       "stiffness_mN_per_m"},
+       "4: cortex.a.compression_ratio: is not used without stiffness_mN_per_m; remove it, or set stiffness_mN_per_m"},
       {cortex + "stiffness_mN_per_m = 1\nstiffness_program = { time_min = [0, 1], activity = [1] }",
-       "test.toml:4: cortex.a.stiffness_program.activity: has length 1 for 2 times; set activity to as many values as "
-       "times"},
+       "4: cortex.a.stiffness_program.activity: has length 1 for 2 times; set activity to as many values as times"},
       {"[cortex.apical]\nregion = \"all\"\ntension_mN_per_m = 1\n[cortex.apicl]\ntension_mN_per_m = 2",
-       "test.toml:4: cortex.apicl.region: is missing; set region to a text, or rename the table to cortex.apical "
-       "(nearest match)"},
+       "4: cortex.apicl.region: is missing; set region to a text, or rename the table to cortex.apical (nearest "
+       "match)"},
       {"[cortex.a]\nregion = \"mesoderm\"\ntension_mN_per_m = 1",
-       "test.toml:2: cortex.a.region: region \"mesoderm\" does not exist; use one of: all"},
+       "2: cortex.a.region: region \"mesoderm\" does not exist; use one of: all"},
       {cortex + "tension_mN_per_m = 1\nprofile = { shape = \"gaussian\", sigma_um = 3, sigma_cells = 2 }",
-       "test.toml:4: cortex.a.profile.sigma_um: conflicts with cortex.a.profile.sigma_cells, which is also set; remove "
-       "one of them"},
+       "4: cortex.a.profile.sigma_um: conflicts with cortex.a.profile.sigma_cells, which is also set; remove one of "
+       "them"},
       {cortex + "tension_mN_per_m = 1\nprofile = { shape = \"plateau\", full_cells = 3 }",
-       "test.toml:4: cortex.a.profile.fade_cells: is missing; set fade_cells to the width of the taper in cells (0: "
-       "none)"},
+       "4: cortex.a.profile.fade_cells: is missing; set fade_cells to the width of the taper in cells (0: none)"},
       {cortex +
            "tension_mN_per_m = 1\nprofile = { shape = \"plateau\", full_cells = 3, fade_cells = 1, about = \"belly\" }",
-       "test.toml:4: cortex.a.profile.about: region \"belly\" does not exist; use one of: all"},
+       "4: cortex.a.profile.about: region \"belly\" does not exist; use one of: all"},
       {cortex + "tension_mN_per_m = 1\ntrigger = { below = 0.3 }",
-       "test.toml:4: cortex.a.trigger.measure: is missing; set measure to one of: apical_area_ratio | basal_area_ratio "
-       "| height_ratio | apical_stretch"},
+       "4: cortex.a.trigger.measure: is missing; set measure to one of: apical_area_ratio | basal_area_ratio | "
+       "height_ratio | apical_stretch"},
       {cortex + "tension_mN_per_m = 1\ntrigger = { measure = \"height_ratio\" }",
-       "test.toml:4: cortex.a.trigger.below: is missing; set either below or above"},
+       "4: cortex.a.trigger.below: is missing; set either below or above"},
       {cortex + "tension_mN_per_m = 1\nfollow = { measure = \"height_ratio\", from = 1, to = 1 }",
-       "test.toml:4: cortex.a.follow.to: equals `from`; set `to` to a different value"},
+       "4: cortex.a.follow.to: equals `from`; set `to` to a different value"},
       {cortex + "tension_mN_per_m = 1\nfollow = { measure = \"height_ratio\", from = 1, to = 2 }\ntrigger = { measure "
                 "= \"height_ratio\", below = 1 }",
-       "test.toml:4: cortex.a.follow: conflicts with `trigger`; remove one of them"},
+       "4: cortex.a.follow: conflicts with `trigger`; remove one of them"},
       {cortex +
            "tension_mN_per_m = 1\ndelay = { speed_um_per_s = 1 }\ntrigger = { measure = \"height_ratio\", below = 1 }",
-       "test.toml:5: cortex.a.trigger: conflicts with `delay`, which activates cells at prescribed times; remove one "
-       "of them"},
+       "5: cortex.a.trigger: conflicts with `delay`, which activates cells at prescribed times; remove one of them"},
       {cortex + "tension_mN_per_m = 1\nprofile = { full_length_um = 300 }",
-       "test.toml:4: cortex.a.profile.fade_um: is missing; set both full_length_um and fade_um"},
+       "4: cortex.a.profile.fade_um: is missing; set both full_length_um and fade_um"},
       {"[enclosed.yolk]\nvolume = \"compliant\"\n[vitelline]\ngap_um = 1",
-       "test.toml:1: enclosed.yolk.bulk_modulus_Pa: is missing; set bulk_modulus_Pa to a number > 0"},
+       "1: enclosed.yolk.bulk_modulus_Pa: is missing; set bulk_modulus_Pa to a number > 0"},
       {"[enclosed.yolk]\nbulk_modulus_Pa = 10\n[vitelline]\ngap_um = 1",
-       "test.toml:2: enclosed.yolk.bulk_modulus_Pa: is not used with volume \"held\"; remove bulk_modulus_Pa, or set "
-       "volume to \"compliant\""},
+       "2: enclosed.yolk.bulk_modulus_Pa: is not used with volume \"held\"; remove bulk_modulus_Pa, or set volume to "
+       "\"compliant\""},
       {"[enclosed.yolk]\nvolume = \"held\"",
-       "test.toml:2: enclosed.yolk.volume: no cell can leave the vitelline membrane, since cell and enclosed volumes "
-       "are fixed and the gap is 0; set vitelline.gap_um, for example to 0.5, or volume to \"compliant\""},
+       "2: enclosed.yolk.volume: no cell can leave the vitelline membrane, since cell and enclosed volumes are fixed "
+       "and the gap is 0; set vitelline.gap_um, for example to 0.5, or volume to \"compliant\""},
       {"[embryo]\nshape = \"slice\"\n[division.a]\nregion = \"all\"\nat_s = 5",
-       "test.toml:2: embryo.shape: cells of a slice cannot divide, since its cross-sections must stay alike; set shape "
-       "to \"pill\", or remove [division]"},
+       "2: embryo.shape: cells of a slice cannot divide, since its cross-sections must stay alike; set shape to "
+       "\"pill\", or remove [division]"},
       {"[embryo]\nshape = \"block\"\n[enclosed.yolk]\nvolume = \"held\"",
-       "test.toml:3: enclosed.yolk: a block encloses no volume; remove the table, or set embryo.shape to \"pill\" or "
-       "\"sphere\""},
+       "3: enclosed.yolk: a block encloses no volume; remove the table, or set embryo.shape to \"pill\" or \"sphere\""},
       {"[enclosed.yolk]\nvolume = \"held\"\n[volume]\nmethod = \"projection\"",
-       "test.toml:2: enclosed.yolk.volume: \"held\" requires time.scheme \"newton\" and a volume.method other than "
+       "2: enclosed.yolk.volume: \"held\" requires time.scheme \"newton\" and a volume.method other than "
        "\"projection\"; set volume to \"compliant\", or change time.scheme or volume.method"},
       {"[enclosed.a]\nvolume = \"held\"\n[enclosed.b]\nsurface = \"basal\"\n[vitelline]\ngap_um = 1",
-       "test.toml:4: enclosed.b.surface: another table already constrains this volume; remove one of the two tables"},
+       "4: enclosed.b.surface: another table already constrains this volume; remove one of the two tables"},
       {"[self_contact]\nsurface = \"apical\"\ndistance_um = 10",
-       "test.toml:1: self_contact.search_um: 6 is below twice distance_um; set search_um to several times distance_um"},
+       "1: self_contact.search_um: 6 is below twice distance_um; set search_um to several times distance_um"},
       {"[self_contact]\nfriction = 0.3",
-       "test.toml:2: self_contact.friction: is not used with surface \"none\"; remove friction, or set surface, for "
-       "example to \"apical\""},
+       "2: self_contact.friction: is not used with surface \"none\"; remove friction, or set surface, for example to "
+       "\"apical\""},
       {"[vitelline]\nenabled = false\ndrag_Pa_s_per_um = 5",
-       "test.toml:3: vitelline.drag_Pa_s_per_um: is not used without a vitelline membrane; remove drag_Pa_s_per_um, or "
-       "set enabled to true"},
+       "3: vitelline.drag_Pa_s_per_um: is not used without a vitelline membrane; remove drag_Pa_s_per_um, or set "
+       "enabled to true"},
       {"[embryo]\nshape = \"block\"\n[vitelline]\ndrag_Pa_s_per_um = 5",
-       "test.toml:4: vitelline.drag_Pa_s_per_um: is not used without a vitelline membrane; remove drag_Pa_s_per_um"},
+       "4: vitelline.drag_Pa_s_per_um: is not used without a vitelline membrane; remove drag_Pa_s_per_um"},
       {"[vitelline]\ndrag_Pa_s_per_um = 5\n[volume]\nmethod = \"projection\"",
-       "test.toml:2: vitelline.drag_Pa_s_per_um: requires time.scheme \"newton\" and a volume.method other than "
-       "\"projection\"; remove drag_Pa_s_per_um, or change time.scheme or volume.method"},
+       "2: vitelline.drag_Pa_s_per_um: requires time.scheme \"newton\" and a volume.method other than \"projection\"; "
+       "remove drag_Pa_s_per_um, or change time.scheme or volume.method"},
   };
   expect_errors(cases, load_errors);
 }
@@ -118,18 +99,18 @@ TEST(CortexKeys, FacesThatARegionDoesNotHave) {
 
 // A scenario with a fixed yolk volume may inherit the bulk modulus of its base.
 TEST(CortexKeys, AHeldYolkLeavesWhatItsBaseSaysOfACompliantOne) {
-  EXPECT_NO_THROW(load_scenario({"test", "test.toml", "base = \"furrow-slice\"\n[enclosed.yolk]\nvolume = \"held\""}));
+  EXPECT_NO_THROW(scenario_of("base = \"furrow-slice\"\n[enclosed.yolk]\nvolume = \"held\""));
 }
 
 // Invaginating ventral side, with all laws of a closing furrow.
-Scenario small_furrow() {
+Scenario furrow_of_cortices() {
   const std::string yolk = "[enclosed.yolk]\nvolume = \"compliant\"\nbulk_modulus_Pa = 50000\n";
-  return load_scenario({"furrow", "furrow.toml", support::small_furrow + yolk});
+  return load_scenario({"furrow", "furrow.toml", small_furrow + yolk});
 }
 
 // The region of the active apical cortex is where the furrow is measured.
 TEST(CortexKeys, ASmallFurrowOfCorticesFolds) {
-  const Scenario scenario = small_furrow();
+  const Scenario scenario = furrow_of_cortices();
   Simulation simulation(scenario);
   ASSERT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
   const Observation measures = simulation.measures();
@@ -148,7 +129,7 @@ TEST(CortexKeys, OneThatIsGivenAsNothingIsOff) {
 
 // Forces exerted by a part of the tissue exclude yolk pressure and contact.
 TEST(CortexKeys, ForcesOfAPartLeaveOutWhatIsNotOfCells) {
-  Scenario scenario = small_furrow();
+  Scenario scenario = furrow_of_cortices();
   scenario.cortices.clear();
   scenario.elasticity.corner_barrier_Pa = 0;
   const Simulation simulation(scenario);
@@ -166,7 +147,7 @@ TEST(CortexKeys, ForcesOfAPartLeaveOutWhatIsNotOfCells) {
 
 // Checkpoints include relaxing stress-free areas and contact pairs.
 TEST(CortexKeys, ARunGoesOnToTheSameBits) {
-  Scenario scenario = small_furrow();
+  Scenario scenario = furrow_of_cortices();
   scenario.self_contact.friction = 0.3;
   scenario.vitelline.drag_Pa_s_per_um = 50;
   Simulation whole(scenario);
@@ -175,15 +156,11 @@ TEST(CortexKeys, ARunGoesOnToTheSameBits) {
   while (whole.step())
     if (whole.steps() == 12) kept = whole.memory(), measures = whole.measures();
   ASSERT_TRUE(kept);
-  Checkpoint checkpoint{"", "", "", *kept, {}};
-  checkpoint.record.rows.push_back(measures);
-  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
   Simulation rest(scenario);
-  rest.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  go_on_by_bytes(rest, *kept, measures);
   EXPECT_EQ(rest.run(), whole.status());
   EXPECT_EQ(rest.steps(), whole.steps());
-  EXPECT_EQ(rest.state().positions, whole.state().positions);
-  EXPECT_EQ(rest.state().internals, whole.state().internals);
+  expect_same(rest.state(), whole.state());
   std::size_t remembered = 0;
   for (const auto& internal : whole.state().internals) remembered += internal.size();
   EXPECT_GT(remembered, 0u);
@@ -197,37 +174,34 @@ TEST(InteriorKeys, ModuliByRegionSayWhatWouldBeRight) {
       "\"belly\"\nyoung_modulus_Pa = 50\n";
   const WrongScenarios cases = {
       {soft,
-       "test.toml:1: elasticity.soft: has no effect; set young_modulus_Pa, poisson_ratio, relaxation_min, profile or "
-       "variation"},
-      {"[elasticity.soft]\nyoung_modulus_Pa = 5",
-       "test.toml:1: elasticity.soft.region: is missing; set region to a text"},
+       "1: elasticity.soft: has no effect; set young_modulus_Pa, poisson_ratio, relaxation_min, profile or variation"},
+      {"[elasticity.soft]\nyoung_modulus_Pa = 5", "1: elasticity.soft.region: is missing; set region to a text"},
       {"[elasticity]\nmodel = \"neo-hookean\"\n" + soft + "poisson_ratio = -0.2",
-       "test.toml:5: elasticity.soft.poisson_ratio: -0.2 is below 0, the minimum with model \"neo-hookean\"; set "
-       "poisson_ratio to a number >= 0, or model to \"corotational\""},
+       "5: elasticity.soft.poisson_ratio: -0.2 is below 0, the minimum with model \"neo-hookean\"; set poisson_ratio "
+       "to a number >= 0, or model to \"corotational\""},
       {soft + "young_modulus_Pa = 5\nheight_percent = [80, 100]",
-       "test.toml:4: elasticity.soft.height_percent: no element of the region has its centre in this part of the "
-       "height; widen height_percent, or increase embryo.elements_per_cell through the height"},
+       "4: elasticity.soft.height_percent: no element of the region has its centre in this part of the height; widen "
+       "height_percent, or increase embryo.elements_per_cell through the height"},
       {"[embryo]\nelements_per_cell = [1, 1, 3]\n[region.belly]\nface = \"ventral\"\n" + soft +
            "young_modulus_Pa = 5\nheight_percent = [60, 100]\n[elasticity.apex]\nregion = \"belly\"\nheight_percent = "
            "[80, 100]\npoisson_ratio = 0.3",
-       "test.toml:5: elasticity.soft: overlaps elasticity.apex in the same layer of cell 0 at (-154.4, -67.53, -74.13) "
-       "um; set height_percent to disjoint ranges, or use disjoint regions"},
+       "5: elasticity.soft: overlaps elasticity.apex in the same layer of cell 0 at (-154.4, -67.53, -74.13) um; set "
+       "height_percent to disjoint ranges, or use disjoint regions"},
       {soft + "young_modulus_Pa = 5\nheight_percent = [80, 10]",
-       "test.toml:4: elasticity.soft.height_percent: low is above high; set height_percent to [low, high], 0 to 100"},
+       "4: elasticity.soft.height_percent: low is above high; set height_percent to [low, high], 0 to 100"},
       {soft + "profile = { shape = \"linear\", half_width_um = 20 }",
-       "test.toml:3: elasticity.soft.profile: the modulus of cell 0 at (-154.4, -67.53, -74.13) um would be 0; set "
-       "profile.edge or profile.factor above 0"},
+       "3: elasticity.soft.profile: the modulus of cell 0 at (-154.4, -67.53, -74.13) um would be 0; set profile.edge "
+       "or profile.factor above 0"},
       {soft + "young_modulus_Pa = 5\nheight_percent = [0, 50]\n[division.d]\nregion = \"all\"\nat_s = 9",
-       "test.toml:4: elasticity.soft.height_percent: cells with layers cannot divide; remove height_percent, or "
-       "[division]"},
+       "4: elasticity.soft.height_percent: cells with layers cannot divide; remove height_percent, or [division]"},
       {"[elasticity.soft]\nregion = \"belly\"\nyoung_modulus_Pa = 5",
-       "test.toml:2: elasticity.soft.region: region \"belly\" does not exist; use one of: all"},
+       "2: elasticity.soft.region: region \"belly\" does not exist; use one of: all"},
       {"[elasticity]\nmodel = \"shape-memory\"\n" + soft + "young_modulus_Pa = 5",
-       "test.toml:3: elasticity.soft: model \"shape-memory\" does not support regions; remove the table, or set "
-       "elasticity.model to \"corotational\" or \"neo-hookean\""},
+       "3: elasticity.soft: model \"shape-memory\" does not support regions; remove the table, or set elasticity.model "
+       "to \"corotational\" or \"neo-hookean\""},
       {two,
-       "test.toml:9: elasticity.stiff: overlaps elasticity.soft in cell 72 at (-167.4, 0, -90.53) um; use disjoint "
-       "regions, for example with `except`"},
+       "9: elasticity.stiff: overlaps elasticity.soft in cell 72 at (-167.4, 0, -90.53) um; use disjoint regions, for "
+       "example with `except`"},
   };
   expect_errors(cases, model_errors);
 }
@@ -237,25 +211,25 @@ TEST(InteriorKeys, NeoHookeanAndFlowSayWhatWouldBeRight) {
   const std::string soft = "[elasticity.soft]\nregion = \"all\"\n";
   const WrongScenarios cases = {
       {"[elasticity]\nrelaxation_min = 6",
-       "test.toml:2: elasticity.relaxation_min: is not used with model \"corotational\"; remove it, or set "
-       "elasticity.model to \"neo-hookean\""},
+       "2: elasticity.relaxation_min: is not used with model \"corotational\"; remove it, or set elasticity.model to "
+       "\"neo-hookean\""},
       {"[elasticity]\nmodel = \"shape-memory\"\nrelaxation_s = 6",
-       "test.toml:3: elasticity.relaxation_s: is not used with model \"shape-memory\"; remove it, or set "
-       "elasticity.model to \"neo-hookean\""},
+       "3: elasticity.relaxation_s: is not used with model \"shape-memory\"; remove it, or set elasticity.model to "
+       "\"neo-hookean\""},
       {neo + "attractor_preload_nN = 1",
-       "test.toml:3: elasticity.attractor_preload_nN: is not used with model \"neo-hookean\"; remove it, or set "
-       "elasticity.model to \"shape-memory\""},
+       "3: elasticity.attractor_preload_nN: is not used with model \"neo-hookean\"; remove it, or set elasticity.model "
+       "to \"shape-memory\""},
       {neo + "poisson_ratio = -0.2",
-       "test.toml:3: elasticity.poisson_ratio: -0.2 is below 0, the minimum with model \"neo-hookean\"; set "
-       "poisson_ratio to a number >= 0, or model to \"corotational\""},
+       "3: elasticity.poisson_ratio: -0.2 is below 0, the minimum with model \"neo-hookean\"; set poisson_ratio to a "
+       "number >= 0, or model to \"corotational\""},
       {neo + "[dynamics]\nshear_viscosity_Pa_s = 10",
-       "test.toml:4: dynamics.shear_viscosity_Pa_s: model \"neo-hookean\" does not support shear viscosity; set it to "
-       "0 and use elasticity.relaxation_min, or set elasticity.model to \"corotational\""},
+       "4: dynamics.shear_viscosity_Pa_s: model \"neo-hookean\" does not support shear viscosity; set it to 0 and use "
+       "elasticity.relaxation_min, or set elasticity.model to \"corotational\""},
       {soft + "relaxation_min = 6",
-       "test.toml:3: elasticity.soft.relaxation_min: is not used with model \"corotational\"; remove it, or set "
-       "elasticity.model to \"neo-hookean\""},
+       "3: elasticity.soft.relaxation_min: is not used with model \"corotational\"; remove it, or set elasticity.model "
+       "to \"neo-hookean\""},
       {neo + soft + "relaxation_min = \"none\"",
-       "test.toml:5: elasticity.soft.relaxation_min: \"none\" has the wrong type; set relaxation_min to a number > 0"},
+       "5: elasticity.soft.relaxation_min: \"none\" has the wrong type; set relaxation_min to a number > 0"},
   };
   expect_errors(cases, model_errors);
 }
@@ -295,14 +269,8 @@ TEST(InteriorKeys, BendingOfOneNeoHookeanElementIsWarnedOf) {
 
 // Column of two cells under pressure: each shortens by pressure / its own modulus.
 TEST(InteriorKeys, ASoftCellIsShortenedMore) {
-  const Scenario scenario = load_scenario({"column", "column.toml", R"(format = 1
-[embryo]
-shape = "block"
-length_um = 20
-width_um = 20
-cell_height_um = 20
-cells = [1, 1, 2]
-[region.low]
+  const Scenario scenario =
+      load_scenario({"column", "column.toml", "format = 1\n" + block_table(20, 20, 20, "1, 1, 2") + R"([region.low]
 ids = [0]
 [region.high]
 ids = [1]
@@ -349,15 +317,9 @@ TEST(InteriorKeys, ARegionOfAllCellsIsLikeNone) {
     const Vectors a = end("[elasticity]\nyoung_modulus_Pa = 300\n" + volume);
     const Vectors b = end("[elasticity.all]\nregion = \"all\"\nyoung_modulus_Pa = 300\n" + volume);
     const Vectors other = end(volume);
-    double apart = 0, without = 0;
-    for (std::size_t n = 0; n < a.size(); ++n) {
-      apart = std::max(apart, (a[n] - b[n]).norm());
-      without = std::max(without, (a[n] - other[n]).norm());
-    }
-    EXPECT_LE(apart, 1e-6);
-    EXPECT_GT(without, 0.1);
+    EXPECT_LE(largest_distance(a, b), 1e-6);
+    EXPECT_GT(largest_distance(a, other), 0.1);
   }
 }
 
 }  // namespace
-}  // namespace plica

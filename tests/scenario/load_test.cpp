@@ -1,17 +1,8 @@
 #include "scenario/load.hpp"
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <iostream>
-
-#include "scenario/builtin.hpp"
 #include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 TEST(LoadScenario, FillsDefaults) {
   const Scenario scenario = scenario_of("");
@@ -42,15 +33,9 @@ directions = ["x", "z"]
 [pressure.c]
 region = "all"
 pressure_Pa = -3
-[time]
-step_s = 0.5
-end_min = 2
 [output]
 frame_every_min = 0.5
 cells_csv = false
-[expect]
-cells = { value = 756, within = 0 }
-time_s = { value = 120.0, within_percent = 5 }
 )");
   EXPECT_EQ(scenario.title, "a \"b\"");
   EXPECT_EQ(scenario.regions.at("belly").x_um, (Range{-10, 20.5}));
@@ -60,23 +45,8 @@ time_s = { value = 120.0, within_percent = 5 }
   EXPECT_EQ(scenario.contractions.at("a").program.time_s, (std::vector<double>{0, 90}));
   EXPECT_EQ(scenario.holds.at("b").directions, (std::vector<std::string>{"x", "z"}));
   EXPECT_EQ(scenario.pressures.at("c").pressure_Pa, -3);
-  EXPECT_EQ(scenario.time.step_s, 0.5);
-  EXPECT_EQ(scenario.time.end_s, 120);
   EXPECT_EQ(scenario.output.frame_every_s, 30);
   EXPECT_EQ(scenario.output.cells_csv, false);
-  EXPECT_EQ(scenario.expect.at("cells").within, 0);
-  EXPECT_EQ(scenario.expect.at("time_s").within_percent, 5);
-}
-
-TEST(LoadScenario, LoadsEveryBuiltin) {
-  int count = 0;
-  for (const BuiltinScenario& builtin : builtin_scenarios()) {
-    const Scenario scenario = load_scenario(find_scenario(std::string(builtin.name)));
-    EXPECT_EQ(scenario.name, builtin.name);
-    ++count;
-  }
-  std::cout << count << " scenarios\n";
-  EXPECT_GT(count, 0);
 }
 
 TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
@@ -84,178 +54,162 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
   const std::string block = "[embryo]\nshape = \"block\"\n";
   const WrongScenarios cases = {
       // Names.
-      {"[embryo]\ndiametr_um = 3", "test.toml:2: embryo.diametr_um: unknown key; use \"diameter_um\" (nearest match)"},
+      {"[embryo]\ndiametr_um = 3", "2: embryo.diametr_um: unknown key; use \"diameter_um\" (nearest match)"},
       {"[embryo]\n\nlength_mm = 3",
-       "test.toml:3: embryo.length_mm: unknown key; use \"length_um\" and convert the value to that unit"},
+       "3: embryo.length_mm: unknown key; use \"length_um\" and convert the value to that unit"},
       {"[time]\nend_h = 1",
-       "test.toml:2: time.end_h: unknown key; use \"end_s\" or \"end_min\" and convert the value to that unit"},
-      {"poisson_ratio = 0.3", "test.toml:1: poisson_ratio: unknown key; move it to [elasticity]"},
-      {"[regoin.a]\nface = \"ventral\"", "test.toml:1: regoin: unknown table; use \"region\" (nearest match)"},
+       "2: time.end_h: unknown key; use \"end_s\" or \"end_min\" and convert the value to that unit"},
+      {"poisson_ratio = 0.3", "1: poisson_ratio: unknown key; move it to [elasticity]"},
+      {"[regoin.a]\nface = \"ventral\"", "1: regoin: unknown table; use \"region\" (nearest match)"},
       {"[output]\nfrobnicate = 1",
-       "test.toml:2: output.frobnicate: unknown key; use one of: frame_every_s, frame_every_min, cells_csv"},
+       "2: output.frobnicate: unknown key; use one of: frame_every_s, frame_every_min, cells_csv"},
       {program + "program = { time_h = [0], activity = [1] }",
-       "test.toml:3: contraction.a.program.time_h: unknown key; use \"program.time_s\" or \"program.time_min\" and "
-       "convert the value to that unit"},
+       "3: contraction.a.program.time_h: unknown key; use \"program.time_s\" or \"program.time_min\" and convert the "
+       "value to that unit"},
       {"[region.\"a b\"]\nface = \"ventral\"",
-       "test.toml:1: region.a b: is not a valid name; use letters, digits, \"_\" and \"-\" only"},
-      {"[region.all]\nface = \"ventral\"",
-       "test.toml:1: region.all: \"all\" is predefined as every cell; rename the region"},
+       "1: region.a b: is not a valid name; use letters, digits, \"_\" and \"-\" only"},
+      {"[region.all]\nface = \"ventral\"", "1: region.all: \"all\" is predefined as every cell; rename the region"},
       // Types, ranges and words.
       {"[embryo]\nlength_um = \"long\"",
-       "test.toml:2: embryo.length_um: \"long\" has the wrong type; set length_um to a number > 0"},
-      {"[embryo]\nlength_um = 0", "test.toml:2: embryo.length_um: 0 is out of range; set length_um to a number > 0"},
-      {"[embryo]\nlength_um = nan",
-       "test.toml:2: embryo.length_um: nan is not a finite number; set length_um to a number > 0"},
+       "2: embryo.length_um: \"long\" has the wrong type; set length_um to a number > 0"},
+      {"[embryo]\nlength_um = 0", "2: embryo.length_um: 0 is out of range; set length_um to a number > 0"},
+      {"[embryo]\nlength_um = nan", "2: embryo.length_um: nan is not a finite number; set length_um to a number > 0"},
       {"[embryo]\nelements_per_cell = [1, 17, 1]",
-       "test.toml:2: embryo.elements_per_cell: 17 is out of range; set elements_per_cell to 3 integers, 1 to 16"},
+       "2: embryo.elements_per_cell: 17 is out of range; set elements_per_cell to 3 integers, 1 to 16"},
       {"[embryo]\ncells = [1, 2]",
-       "test.toml:2: embryo.cells: 2 values are given, but 3 are required; set cells to 3 integers, 1 to 100000"},
-      {"[embryo]\ncells = [1, 2, 2.5]",
-       "test.toml:2: embryo.cells: 2.5 is not an integer; set cells to 3 integers, 1 to 100000"},
+       "2: embryo.cells: 2 values are given, but 3 are required; set cells to 3 integers, 1 to 100000"},
+      {"[embryo]\ncells = [1, 2, 2.5]", "2: embryo.cells: 2.5 is not an integer; set cells to 3 integers, 1 to 100000"},
       {"[elasticity]\npoisson_ratio = 0.5",
-       "test.toml:2: elasticity.poisson_ratio: 0.5 is out of range; set poisson_ratio to a number > -1 and < 0.5"},
+       "2: elasticity.poisson_ratio: 0.5 is out of range; set poisson_ratio to a number > -1 and < 0.5"},
       {"[embryo]\nshape = \"pil\"",
-       "test.toml:2: embryo.shape: \"pil\" is unknown; set shape to one of: pill | sphere | slice | block | egg | "
-       "points | sheet | surface | file (nearest match: \"pill\")"},
+       "2: embryo.shape: \"pil\" is unknown; set shape to one of: pill | sphere | slice | block | egg | points | sheet "
+       "| surface | file (nearest match: \"pill\")"},
       {"[elasticity]\nattractor_preload_nN = 1",
-       "test.toml:2: elasticity.attractor_preload_nN: is not used with model \"corotational\"; remove it, or set "
+       "2: elasticity.attractor_preload_nN: is not used with model \"corotational\"; remove it, or set "
        "elasticity.model to \"shape-memory\""},
       {"[time]\nstep_s = \"fast\"",
-       "test.toml:2: time.step_s: \"fast\" has the wrong type; set step_s to a number >= 1e-06 or \"adaptive\""},
+       "2: time.step_s: \"fast\" has the wrong type; set step_s to a number >= 1e-06 or \"adaptive\""},
       {"[stop]\nat_equilibrium = 1",
-       "test.toml:2: stop.at_equilibrium: 1 has the wrong type; set at_equilibrium to true or false"},
-      {"format = 2", "test.toml:1: format: 2 is out of range; set format to an integer, 1"},
-      {"[region.a]\nx_um = [2, 1]", "test.toml:2: region.a.x_um: low is above high; set x_um to [low, high]"},
-      {"[region.a]\nids = []", "test.toml:2: region.a.ids: the list is empty; set ids to a list of integers >= 0"},
-      {"embryo = 3", "test.toml:1: embryo: 3 is not a table; write a table"},
-      {"[hold.a]\nregion = \"\"", "test.toml:2: hold.a.region: the text is empty; set region to a text"},
+       "2: stop.at_equilibrium: 1 has the wrong type; set at_equilibrium to true or false"},
+      {"format = 2", "1: format: 2 is out of range; set format to an integer, 1"},
+      {"[region.a]\nx_um = [2, 1]", "2: region.a.x_um: low is above high; set x_um to [low, high]"},
+      {"[region.a]\nids = []", "2: region.a.ids: the list is empty; set ids to a list of integers >= 0"},
+      {"embryo = 3", "1: embryo: 3 is not a table; write a table"},
+      {"[hold.a]\nregion = \"\"", "2: hold.a.region: the text is empty; set region to a text"},
       {"embryo.length_um = -1\nregion.a.face = \"top\"",
-       "test.toml:1: embryo.length_um: -1 is out of range; set length_um to a number > 0\ntest.toml:2: region.a.face: "
-       "\"top\" is unknown; set face to one of: ventral | dorsal | left | right | anterior | posterior"},
-      {"[[hold]]\nregion = \"all\"", "test.toml:1: hold: a list is not a table; write a table"},
-      {program + "program = 1",
-       "test.toml:3: contraction.a.program: 1 is not a table; write a table of times and activities"},
+       "1: embryo.length_um: -1 is out of range; set length_um to a number > 0\n2: region.a.face: \"top\" is unknown; "
+       "set face to one of: ventral | dorsal | left | right | anterior | posterior"},
+      {"[[hold]]\nregion = \"all\"", "1: hold: a list is not a table; write a table"},
+      {program + "program = 1", "3: contraction.a.program: 1 is not a table; write a table of times and activities"},
       // The embryo as a whole.
       {"[embryo]\nlength_um = 200",
-       "test.toml:2: embryo.length_um: 200 is less than the diameter, 280; set length_um to at least diameter_um"},
+       "2: embryo.length_um: 200 is less than the diameter, 280; set length_um to at least diameter_um"},
       {"[embryo]\ncell_height_um = 140",
-       "test.toml:2: embryo.cell_height_um: 140 leaves no room inside the embryo; set cell_height_um below half of "
-       "diameter_um, 140"},
+       "2: embryo.cell_height_um: 140 leaves no room inside the embryo; set cell_height_um below half of diameter_um, "
+       "140"},
       {"[embryo]\nshape = \"sphere\"\nlength_um = 460",
-       "test.toml:3: embryo.length_um: is not used with shape \"sphere\"; remove length_um, or set shape to pill or "
-       "slice or block or egg or sheet"},
+       "3: embryo.length_um: is not used with shape \"sphere\"; remove length_um, or set shape to pill or slice or "
+       "block or egg or sheet"},
       {"[embryo]\nwidth_um = 1",
-       "test.toml:2: embryo.width_um: is not used with shape \"pill\"; remove width_um, or set shape to block or "
-       "sheet"},
-      {"[embryo]\nshape = \"file\"",
-       "test.toml:1: embryo.file: is missing; set file to the mesh file for shape \"file\""},
+       "2: embryo.width_um: is not used with shape \"pill\"; remove width_um, or set shape to block or sheet"},
+      {"[embryo]\nshape = \"file\"", "1: embryo.file: is missing; set file to the mesh file for shape \"file\""},
       {block + "cells = [100000, 100000, 100000]\nelements_per_cell = [8, 8, 8]",
-       "test.toml:3: embryo.cells: requires 512000000000000000 elements, more than the limit of 20000000; reduce cells "
-       "or elements_per_cell"},
+       "3: embryo.cells: requires 512000000000000000 elements, more than the limit of 20000000; reduce cells or "
+       "elements_per_cell"},
       {"[embryo]\ncells = [2000, 1000, 1000]\nelements_per_cell = [1, 2, 2]",
-       "test.toml:2: embryo.cells: requires 40000000 elements, more than the limit of 20000000; reduce cells or "
+       "2: embryo.cells: requires 40000000 elements, more than the limit of 20000000; reduce cells or "
        "elements_per_cell"},
       {block + "[vitelline]\nenabled = true",
-       "test.toml:4: vitelline.enabled: a vitelline membrane requires a closed embryo, but a block is open; set "
-       "enabled to false"},
+       "4: vitelline.enabled: a vitelline membrane requires a closed embryo, but a block is open; set enabled to "
+       "false"},
       {"[dynamics]\nsurface_drag_Pa_s_per_um = 0",
-       "test.toml:2: dynamics.surface_drag_Pa_s_per_um: drag and density are both 0; set surface_drag_Pa_s_per_um or "
+       "2: dynamics.surface_drag_Pa_s_per_um: drag and density are both 0; set surface_drag_Pa_s_per_um or "
        "density_kg_per_m3 above 0"},
       // Times and programs.
       {"[time]\nend_min = 1\nend_s = 60",
-       "test.toml:3: time.end_s: conflicts with time.end_min, which is also set; remove one of them"},
+       "3: time.end_s: conflicts with time.end_min, which is also set; remove one of them"},
       {"[time]\nfirst_step_s = 61",
-       "test.toml:2: time.first_step_s: 61 is above max_step_s, 30; set first_step_s to at most max_step_s"},
+       "2: time.first_step_s: 61 is above max_step_s, 30; set first_step_s to at most max_step_s"},
       {"[time]\nintegrator = \"bdf2\"\n[dynamics]\ndensity_kg_per_m3 = 1",
-       "test.toml:2: time.integrator: \"bdf2\" does not support dynamics.density_kg_per_m3 above 0; set integrator to "
+       "2: time.integrator: \"bdf2\" does not support dynamics.density_kg_per_m3 above 0; set integrator to "
        "\"backward-euler\""},
       {"[time]\nintegrator = \"bdf2\"\n[volume]\nmethod = \"projection\"",
-       "test.toml:2: time.integrator: \"bdf2\" does not support volume.method = \"projection\"; set integrator to "
+       "2: time.integrator: \"bdf2\" does not support volume.method = \"projection\"; set integrator to "
        "\"backward-euler\""},
       {"[time]\nintegrator = \"bdf2\"\nscheme = \"linearly-implicit\"\n[volume]\nmethod = \"none\"",
-       "test.toml:2: time.integrator: \"bdf2\" does not support time.scheme = \"linearly-implicit\"; set integrator to "
+       "2: time.integrator: \"bdf2\" does not support time.scheme = \"linearly-implicit\"; set integrator to "
        "\"backward-euler\""},
       {program + "program = { time_s = [0, 1], activity = [1] }",
-       "test.toml:3: contraction.a.program.activity: has length 1 for 2 times; set activity to as many values as "
-       "times"},
+       "3: contraction.a.program.activity: has length 1 for 2 times; set activity to as many values as times"},
       {program + "program = { activity = [1] }",
-       "test.toml:3: contraction.a.program.time_s: is missing; set time_s or time_min along with activity"},
+       "3: contraction.a.program.time_s: is missing; set time_s or time_min along with activity"},
       {program + "program = { time_s = [1] }",
-       "test.toml:3: contraction.a.program.activity: is missing; set activity to as many values as times"},
+       "3: contraction.a.program.activity: is missing; set activity to as many values as times"},
       {program + "program = { time_min = [0, 1, 0.5], activity = [1, 1, 1] }",
-       "test.toml:3: contraction.a.program.time_min: the times do not increase; list times in increasing order; repeat "
-       "a time once to mark a jump"},
+       "3: contraction.a.program.time_min: the times do not increase; list times in increasing order; repeat a time "
+       "once to mark a jump"},
       {program + "program = { time_s = [0], activity = [-1] }",
-       "test.toml:3: contraction.a.program.activity: -1 is out of range; set activity to a list of numbers >= 0"},
+       "3: contraction.a.program.activity: -1 is out of range; set activity to a list of numbers >= 0"},
       {program + "profile = { sigma_um = 30 }",
-       "test.toml:3: contraction.a.profile.shape: is missing; set shape to one of: constant | linear | gaussian | "
-       "plateau | table | array"},
+       "3: contraction.a.profile.shape: is missing; set shape to one of: constant | linear | gaussian | plateau | "
+       "table | array"},
       {program + "profile = { shape = \"gaussian\" }",
-       "test.toml:3: contraction.a.profile.sigma_um: is missing; set sigma_um or sigma_cells to a number > 0"},
+       "3: contraction.a.profile.sigma_um: is missing; set sigma_um or sigma_cells to a number > 0"},
       {program + "profile = { shape = \"linear\", edge = 0.5 }",
-       "test.toml:3: contraction.a.profile.half_width_um: is missing; set half_width_um to the distance at which the "
-       "factor reaches edge, a number > 0"},
+       "3: contraction.a.profile.half_width_um: is missing; set half_width_um to the distance at which the factor "
+       "reaches edge, a number > 0"},
       {program + "profile = { shape = \"linear\", half_width_um = 50, sigma_um = 3 }",
-       "test.toml:3: contraction.a.profile.sigma_um: is not used with shape \"linear\"; remove it, or set shape to "
-       "\"gaussian\""},
+       "3: contraction.a.profile.sigma_um: is not used with shape \"linear\"; remove it, or set shape to \"gaussian\""},
       {program + "profile = { shape = \"constant\", edge = 0.5 }",
-       "test.toml:3: contraction.a.profile.edge: is not used with a constant profile; remove it, or set another shape "
-       "or a taper"},
+       "3: contraction.a.profile.edge: is not used with a constant profile; remove it, or set another shape or a "
+       "taper"},
       {program + "delay = { from = \"ends\" }",
-       "test.toml:3: contraction.a.delay.speed_um_per_s: is missing; set speed_um_per_s to a number > 0 or \"none\""},
+       "3: contraction.a.delay.speed_um_per_s: is missing; set speed_um_per_s to a number > 0 or \"none\""},
       {program + "delay = { from = \"ends\", speed_um_per_s = \"none\" }",
-       "test.toml:3: contraction.a.delay.from: is not used with speed \"none\"; remove it, or set speed_um_per_s"},
+       "3: contraction.a.delay.from: is not used with speed \"none\"; remove it, or set speed_um_per_s"},
       {program + "variation = { sead = 2 }",
-       "test.toml:3: contraction.a.variation.sead: unknown key; use \"variation.seed\" (nearest match)"},
+       "3: contraction.a.variation.sead: unknown key; use \"variation.seed\" (nearest match)"},
       // Regions.
-      {"[contraction.a]\nstiffness_nN_per_um = 1",
-       "test.toml:1: contraction.a.region: is missing; set region to a text"},
+      {"[contraction.a]\nstiffness_nN_per_um = 1", "1: contraction.a.region: is missing; set region to a text"},
       {"[region.furrow]\nface = \"ventral\"\n[contraction.a]\nregion = \"furow\"",
-       "test.toml:4: contraction.a.region: region \"furow\" does not exist; use \"furrow\" (nearest match)"},
-      {"[hold.a]\nregion = \"b\"", "test.toml:2: hold.a.region: region \"b\" does not exist; use one of: all"},
+       "4: contraction.a.region: region \"furow\" does not exist; use \"furrow\" (nearest match)"},
+      {"[hold.a]\nregion = \"b\"", "2: hold.a.region: region \"b\" does not exist; use one of: all"},
       {"[pressure.a]\npressure_Pa = 1\nregion = \"b\"",
-       "test.toml:3: pressure.a.region: region \"b\" does not exist; use one of: all"},
-      {"[furrow]\nregion = \"b\"", "test.toml:2: furrow.region: region \"b\" does not exist; use one of: all"},
-      {"[region.a]\nunion = [\"all\", \"b\"]",
-       "test.toml:2: region.a.union: region \"b\" does not exist; use one of: all, a"},
-      {"[region.a]\nintersect = [\"b\"]",
-       "test.toml:2: region.a.intersect: region \"b\" does not exist; use one of: all, a"},
-      {"[region.a]\nexcept = [\"b\"]", "test.toml:2: region.a.except: region \"b\" does not exist; use one of: all, a"},
+       "3: pressure.a.region: region \"b\" does not exist; use one of: all"},
+      {"[furrow]\nregion = \"b\"", "2: furrow.region: region \"b\" does not exist; use one of: all"},
+      {"[region.a]\nunion = [\"all\", \"b\"]", "2: region.a.union: region \"b\" does not exist; use one of: all, a"},
+      {"[region.a]\nintersect = [\"b\"]", "2: region.a.intersect: region \"b\" does not exist; use one of: all, a"},
+      {"[region.a]\nexcept = [\"b\"]", "2: region.a.except: region \"b\" does not exist; use one of: all, a"},
       {"[region.a]\nunion = [\"b\"]\n[region.b]\nexcept = [\"a\"]",
-       "test.toml:1: region.a: refers to itself: a > b > a; remove one of these references"},
+       "1: region.a: refers to itself: a > b > a; remove one of these references"},
       {"[region.a]",
-       "test.toml:1: region.a: has no selector; set face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, "
-       "rows, neighbours_of, union, intersect or except"},
-      {"[region.a]\nids = [1]\ncells_across = 3",
-       "test.toml:3: region.a.cells_across: is not used without face; set face"},
+       "1: region.a: has no selector; set face, ids, array, angle_deg, length_percent, x_um, y_um, z_um, rows, "
+       "neighbours_of, union, intersect or except"},
+      {"[region.a]\nids = [1]\ncells_across = 3", "3: region.a.cells_across: is not used without face; set face"},
       {"[region.a]\nface = \"ventral\"\ncells_along = 13",
-       "test.toml:3: region.a.cells_along: 13 cells cannot be centred on 18; set cells_along to 12 or 14 (both numbers "
-       "odd, or both even)"},
+       "3: region.a.cells_along: 13 cells cannot be centred on 18; set cells_along to 12 or 14 (both numbers odd, or "
+       "both even)"},
       {"[region.a]\nface = \"left\"\ncells_across = 9",
-       "test.toml:3: region.a.cells_across: 9 exceeds the 8 cells of the face in this direction; set cells_across to "
-       "at most 8"},
+       "3: region.a.cells_across: 9 exceeds the 8 cells of the face in this direction; set cells_across to at most 8"},
       {"[region.a]\nface = \"posterior\"\ncells_along = 18",
-       "test.toml:3: region.a.cells_along: 18 exceeds the 9 cells of the face in this direction; set cells_along to at "
-       "most 9"},
-      {"[region.a]\nids = [756]",
-       "test.toml:2: region.a.ids: cell 756 does not exist; set ids to numbers from 0 to 755"},
+       "3: region.a.cells_along: 18 exceeds the 9 cells of the face in this direction; set cells_along to at most 9"},
+      {"[region.a]\nids = [756]", "2: region.a.ids: cell 756 does not exist; set ids to numbers from 0 to 755"},
       // Expectations.
       {"[expect]\nfurrow_depth_um = 28.89",
-       "test.toml:2: expect.furrow_depth_um: 28.89 has no tolerance; write { value = ..., within_percent = ... } or { "
-       "value = ..., within = ... }"},
+       "2: expect.furrow_depth_um: 28.89 has no tolerance; write { value = ..., within_percent = ... } or { value = "
+       "..., within = ... }"},
       {"[expect]\nfurrow_depth_um = { value = 1 }",
-       "test.toml:2: expect.furrow_depth_um: has no tolerance; set within or within_percent"},
+       "2: expect.furrow_depth_um: has no tolerance; set within or within_percent"},
       {"[expect]\nfurrow_depth_um = { within = 1 }",
-       "test.toml:2: expect.furrow_depth_um.value: is missing; set value to a number"},
+       "2: expect.furrow_depth_um.value: is missing; set value to a number"},
       {"[expect]\nfurrow_dept_um = { value = 1, within = 1 }",
-       "test.toml:2: expect.furrow_dept_um: unknown output variable; use \"furrow_depth_um\" (nearest match)"},
+       "2: expect.furrow_dept_um: unknown output variable; use \"furrow_depth_um\" (nearest match)"},
       {"[expect]\ncells = { value = 1, within = 1, within_percent = 1 }",
-       "test.toml:2: expect.cells.within_percent: conflicts with expect.cells.within, which is also set; remove one of "
-       "them"},
+       "2: expect.cells.within_percent: conflicts with expect.cells.within, which is also set; remove one of them"},
       // Bases.
       {"base = \"drosophla\"",
-       "test.toml:1: base: \"drosophla\" is neither a built-in scenario nor a file; use \"drosophila\" (nearest "
-       "match); set base to a built-in name or a path relative to this file"},
+       "1: base: \"drosophla\" is neither a built-in scenario nor a file; use \"drosophila\" (nearest match); set base "
+       "to a built-in name or a path relative to this file"},
   };
   expect_errors(cases, load_errors);
 }
@@ -383,15 +337,9 @@ TEST(LoadScenario, ReportsWrongOverrides) {
 }
 
 TEST(FindScenario, SaysWhichNameIsNear) {
-  try {
-    find_scenario("drosofila");
-    FAIL();
-  } catch (const UsageError& error) {
-    EXPECT_STREQ(error.what(),
-                 "\"drosofila\" is neither a built-in scenario nor a file; use \"drosophila\" (nearest match)");
-  }
+  EXPECT_EQ(error_of<UsageError>([] { return find_scenario("drosofila"); }),
+            "\"drosofila\" is neither a built-in scenario nor a file; use \"drosophila\" (nearest match)");
   EXPECT_THROW(find_scenario("/"), FileError);
 }
 
 }  // namespace
-}  // namespace plica

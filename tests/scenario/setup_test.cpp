@@ -2,24 +2,14 @@
 // criteria and times.
 #include "scenario/setup.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <iostream>
-
-#include "core/errors.hpp"
 #include "scenario/embryo_axes.hpp"
-#include "scenario/load.hpp"
 #include "scenario/print.hpp"
 #include "scenario/validate.hpp"
 #include "scenario/watch.hpp"
 #include "support/scenarios.hpp"
 #include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 // Strip of seven cells with contractions in three regions, of one, three and two cells.
 Scenario three_contractions(const std::string& more = "") {
@@ -100,13 +90,11 @@ TEST(AutomaticIntegrator, IsOfSecondOrderWhereItCanBe) {
 
 TEST(AutomaticValues, AreRecordedAsNumbers) {
   const std::string text = resolved_toml(scenario_of("[embryo]\nshape = \"sheet\"\n"));
-  EXPECT_NE(text.find("\ncorner_barrier_Pa = 100\n"), std::string::npos) << text;
-  EXPECT_EQ(text.find("integrator = \"automatic\""), std::string::npos) << text;
+  EXPECT_SAYS(text, "\ncorner_barrier_Pa = 100\n");
+  EXPECT_SAYS_NOT(text, "integrator = \"automatic\"");
 }
 
-EmbryoAxes axes_in(const std::string& keys) {
-  return axes_of(load_scenario({"test", "test.toml", "[embryo]\n" + keys}).embryo);
-}
+EmbryoAxes axes_in(const std::string& keys) { return axes_of(scenario_of("[embryo]\n" + keys).embryo); }
 
 TEST(EmbryoAxes, AreAnatomicalForEmbryosAndPlainForOtherTissues) {
   EXPECT_EQ(axes_in(""), anatomical_axes());
@@ -164,40 +152,38 @@ TEST(Symmetry, WhatHasNoImageIsRefused) {
       "region \"right\" is not symmetric: it contains cell 95 but not its mirror image, cell 0; use a symmetric "
       "region, or remove embryo.mirror";
   const WrongScenarios cases = {
-      {"[embryo]\nmirror = [\"z\"]", "test.toml:2: embryo.mirror: \"z\" is unknown; set mirror to a list of: x | y"},
-      {"[embryo]\nmirror = [\"y\", \"y\"]", "test.toml:2: embryo.mirror: \"y\" occurs twice; list each direction once"},
+      {"[embryo]\nmirror = [\"z\"]", "2: embryo.mirror: \"z\" is unknown; set mirror to a list of: x | y"},
+      {"[embryo]\nmirror = [\"y\", \"y\"]", "2: embryo.mirror: \"y\" occurs twice; list each direction once"},
       {"[embryo]\ncells = [12, 7, 6]\nmirror = [\"y\"]",
-       "test.toml:3: embryo.mirror: the plane y = 0 cuts cells in two, for example cell 36; give an even number of "
-       "cells along y"},
+       "3: embryo.mirror: the plane y = 0 cuts cells in two, for example cell 36; give an even number of cells along "
+       "y"},
       {"[embryo]\nshape = \"slice\"\nlength_um = 7\ncells = [1, 8, 6]\nmirror = [\"x\"]",
-       "test.toml:5: embryo.mirror: the plane x = 0 cuts cells in two, for example cell 0; give an even number of "
-       "cells along x"},
+       "5: embryo.mirror: the plane x = 0 cuts cells in two, for example cell 0; give an even number of cells along x"},
       {pill + "[division.a]\nregion = \"all\"\nat_s = 5",
-       "test.toml:6: embryo.mirror: mirrored cells cannot divide; remove mirror, or [division]"},
+       "6: embryo.mirror: mirrored cells cannot divide; remove mirror, or [division]"},
       {pill + "[volume]\nmethod = \"projection\"",
-       "test.toml:6: embryo.mirror: the paper's algorithm does not support mirror planes; remove mirror, or set "
-       "time.scheme to \"newton\" and volume.method to \"coupled\" or \"none\""},
-      {pill + "[contraction.a]\nregion = \"right\"\nstiffness_nN_per_um = 1",
-       "test.toml:12: contraction.a.region: " + right},
-      {pill + "[cortex.a]\nregion = \"right\"\ntension_mN_per_m = 1", "test.toml:12: cortex.a.region: " + right},
-      {pill + "[ablation.a]\nregion = \"right\"\nat_s = 1", "test.toml:12: ablation.a.region: " + right},
-      {pill + "[pressure.a]\nregion = \"right\"\npressure_Pa = 1", "test.toml:12: pressure.a.region: " + right},
+       "6: embryo.mirror: the paper's algorithm does not support mirror planes; remove mirror, or set time.scheme to "
+       "\"newton\" and volume.method to \"coupled\" or \"none\""},
+      {pill + "[contraction.a]\nregion = \"right\"\nstiffness_nN_per_um = 1", "12: contraction.a.region: " + right},
+      {pill + "[cortex.a]\nregion = \"right\"\ntension_mN_per_m = 1", "12: cortex.a.region: " + right},
+      {pill + "[ablation.a]\nregion = \"right\"\nat_s = 1", "12: ablation.a.region: " + right},
+      {pill + "[pressure.a]\nregion = \"right\"\npressure_Pa = 1", "12: pressure.a.region: " + right},
       {pill + "[cortex.a]\nregion = \"belly\"\ntension_mN_per_m = 1\nvariation = { spread = 0.3 }",
-       "test.toml:11: cortex.a: is not symmetric: the factor is 0.8292 in cell 0 and 0.5967 in its mirror image, cell "
-       "95; make variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
+       "11: cortex.a: is not symmetric: the factor is 0.8292 in cell 0 and 0.5967 in its mirror image, cell 95; make "
+       "variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
       {pill + "[contraction.a]\nregion = \"belly\"\nstiffness_nN_per_um = 1\ndelay = { speed_um_per_s = 1, from = "
               "\"low\" }",
-       "test.toml:11: contraction.a: is not symmetric: the delay is 11.48 s in cell 0 and 193 s in its mirror image, "
-       "cell 95; make variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
+       "11: contraction.a: is not symmetric: the delay is 11.48 s in cell 0 and 193 s in its mirror image, cell 95; "
+       "make variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
       {pill + "[contraction.a]\nregion = \"belly\"\nstiffness_nN_per_um = 1\npulse = { period_s = 60 }",
-       "test.toml:11: contraction.a: is not symmetric: the pulse phase is 0.8882 in cell 0 and 0.4079 in its mirror "
-       "image, cell 95; make variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
+       "11: contraction.a: is not symmetric: the pulse phase is 0.8882 in cell 0 and 0.4079 in its mirror image, cell "
+       "95; make variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
       {pill + "[elasticity.a]\nregion = \"belly\"\nprofile = { shape = \"table\", at_um = [-90, 90], factor = [1, 2] }",
-       "test.toml:11: elasticity.a: is not symmetric: the factor is 1.235 in cell 0 and 1.765 in its mirror image, "
-       "cell 95; make variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
+       "11: elasticity.a: is not symmetric: the factor is 1.235 in cell 0 and 1.765 in its mirror image, cell 95; make "
+       "variation, delay, pulse and profile symmetric, or remove embryo.mirror"},
       {pill + "[hold.a]\nregion = \"all\"\nz_um = [0, 200]\ny_um = [10, 20]",
-       "test.toml:11: hold.a: is not symmetric: only one of the node at -118.731, -11.1918, 0 um and its mirror image "
-       "is fixed; use a symmetric region and ranges, or remove embryo.mirror"},
+       "11: hold.a: is not symmetric: only one of the node at -118.731, -11.1918, 0 um and its mirror image is fixed; "
+       "use a symmetric region and ranges, or remove embryo.mirror"},
   };
   expect_errors(cases, side_errors);
 }
@@ -212,9 +198,9 @@ TEST(Symmetry, RegionsThatAreOnlyMeasuredMayLieOnOneSide) {
 }
 
 TEST(Symmetry, WithoutPlanesNothingIsHalved) {
-  const Scenario scenario = load_scenario({"test", "test.toml", "[embryo]\ncells = [7, 5, 3]"});
+  const Scenario scenario = scenario_of("[embryo]\ncells = [7, 5, 3]");
   EXPECT_FALSE(make_solved_side(scenario, *make_model(scenario)));
-  EXPECT_TRUE(load_scenario({"test", "test.toml", pill}, {"embryo.mirror=[]"}).embryo.mirror.empty());
+  EXPECT_TRUE(scenario_of(pill, {"embryo.mirror=[]"}).embryo.mirror.empty());
 }
 
 const std::string floor_monitor = "[monitor.floor]\nquantity = \"position\"\naxis = \"z\"\n";  // three lines
@@ -222,59 +208,53 @@ const std::string floor_monitor = "[monitor.floor]\nquantity = \"position\"\naxi
 TEST(MonitorRules, EveryErrorIsOneLineWithARemedy) {
   const WrongScenarios cases = {
       {"[monitor.a]",
-       "test.toml:1: monitor.a.quantity: is missing; set quantity to one of: position | displacement | speed | "
-       "velocity | deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | "
-       "apical_elongation | pressure | apical_load | inward_displacement | kinetic_energy | time | wall"},
+       "1: monitor.a.quantity: is missing; set quantity to one of: position | displacement | speed | velocity | "
+       "deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | apical_elongation | "
+       "pressure | apical_load | inward_displacement | kinetic_energy | time | wall"},
       {"[monitor.a]\nquantity = \"speed\"\nregion = \"al\"",
-       "test.toml:3: monitor.a.region: region \"al\" does not exist; use \"all\" (nearest match)"},
-      {"[monitor.a]\nquantity = \"position\"",
-       "test.toml:1: monitor.a.axis: is missing; set axis to \"x\", \"y\" or \"z\""},
+       "3: monitor.a.region: region \"al\" does not exist; use \"all\" (nearest match)"},
+      {"[monitor.a]\nquantity = \"position\"", "1: monitor.a.axis: is missing; set axis to \"x\", \"y\" or \"z\""},
       {"[monitor.a]\nquantity = \"speed\"\naxis = \"z\"",
-       "test.toml:3: monitor.a.axis: is not used with quantity \"speed\"; remove axis, or set quantity to "
-       "\"velocity\""},
+       "3: monitor.a.axis: is not used with quantity \"speed\"; remove axis, or set quantity to \"velocity\""},
       {"[monitor.a]\nquantity = \"volume\"\nface = \"apical\"",
-       "test.toml:3: monitor.a.face: is not used with quantity \"volume\"; remove face"},
+       "3: monitor.a.face: is not used with quantity \"volume\"; remove face"},
       {"[monitor.a]\nquantity = \"time\"\nover = \"max\"",
-       "test.toml:3: monitor.a.over: is not used with quantity \"time\"; remove over, since the quantity has a single "
-       "value"},
+       "3: monitor.a.over: is not used with quantity \"time\"; remove over, since the quantity has a single value"},
       {"[monitor.a]\nquantity = \"deviation\"",
-       "test.toml:1: monitor.a.reference: is missing; set reference to the results directory of a run"},
+       "1: monitor.a.reference: is missing; set reference to the results directory of a run"},
       {"[monitor.a]\nquantity = \"surface_distance\"",
-       "test.toml:1: monitor.a.reference: is missing; set reference to a mesh file"},
+       "1: monitor.a.reference: is missing; set reference to a mesh file"},
       {"[monitor.a]\nquantity = \"speed\"\nreference = \"b\"",
-       "test.toml:3: monitor.a.reference: is not used with quantity \"speed\"; remove reference"},
+       "3: monitor.a.reference: is not used with quantity \"speed\"; remove reference"},
       {"[monitor.a]\nquantity = \"surface_distance\"\nreference = \"b\"\nreference_at = \"end\"",
-       "test.toml:4: monitor.a.reference_at: is not used with quantity \"surface_distance\"; remove reference_at"},
+       "4: monitor.a.reference_at: is not used with quantity \"surface_distance\"; remove reference_at"},
       {"[monitor.a]\nquantity = \"kinetic_energy\"",
-       "test.toml:2: monitor.a.quantity: kinetic energy requires a density above 0; set dynamics.density_kg_per_m3, or "
-       "set quantity to \"speed\""},
+       "2: monitor.a.quantity: kinetic energy requires a density above 0; set dynamics.density_kg_per_m3, or set "
+       "quantity to \"speed\""},
       {"[volume]\nmethod = \"none\"\n[monitor.a]\nquantity = \"pressure\"",
-       "test.toml:4: monitor.a.quantity: cell pressure requires conserved cell volumes; set volume.method to "
-       "\"coupled\""},
+       "4: monitor.a.quantity: cell pressure requires conserved cell volumes; set volume.method to \"coupled\""},
       // Criteria.
-      {"[stop.a]\nabove = 1", "test.toml:1: stop.a.monitor: is missing; set monitor to a text"},
-      {floor_monitor + "[stop.a]\nmonitor = \"floor\"", "test.toml:4: stop.a: has no bound; set above or below"},
-      {"[stop.a]",
-       "test.toml:1: stop.a.monitor: is missing; set monitor to a text\ntest.toml:1: stop.a: has no bound; set above "
-       "or below"},
+      {"[stop.a]\nabove = 1", "1: stop.a.monitor: is missing; set monitor to a text"},
+      {floor_monitor + "[stop.a]\nmonitor = \"floor\"", "4: stop.a: has no bound; set above or below"},
+      {"[stop.a]", "1: stop.a.monitor: is missing; set monitor to a text\n1: stop.a: has no bound; set above or below"},
       {floor_monitor + "[stop.a]\nmonitor = \"flor\"\nabove = 1",
-       "test.toml:5: stop.a.monitor: monitor \"flor\" does not exist; use \"floor\" (nearest match)"},
+       "5: stop.a.monitor: monitor \"flor\" does not exist; use \"floor\" (nearest match)"},
       {"[stop.a]\nmonitor = \"floor\"\nabove = 1",
-       "test.toml:2: stop.a.monitor: monitor \"floor\" does not exist; define [monitor.floor]"},
+       "2: stop.a.monitor: monitor \"floor\" does not exist; define [monitor.floor]"},
       {floor_monitor + "[stop.a]\nmonitor = \"floor\"\nabove = 3\nbelow = 3",
-       "test.toml:6: stop.a.above: no value lies above 3 and below 3; reduce above, or define two criteria"},
+       "6: stop.a.above: no value lies above 3 and below 3; reduce above, or define two criteria"},
       {floor_monitor + "[stop.equilibrium]\nmonitor = \"floor\"\nabove = 3",
-       "test.toml:4: stop.equilibrium: \"equilibrium\" is a predefined criterion; rename the table, or set "
+       "4: stop.equilibrium: \"equilibrium\" is a predefined criterion; rename the table, or set "
        "stop.equilibrium_speed_um_per_min"},
       {"[monitor.t]\nquantity = \"time\"\n[stop.a]\nmonitor = \"t\"\nabove = 3\nover = \"any\"",
-       "test.toml:6: stop.a.over: monitor \"t\" has a single value; remove over"},
+       "6: stop.a.over: monitor \"t\" has a single value; remove over"},
       // Expectations of monitors.
       {floor_monitor + "[expect]\nfloor.position_m = { value = 1, within = 1 }",
-       "test.toml:5: expect.floor.position_m: no monitor has this name; use \"floor.position_um\" (nearest match)"},
+       "5: expect.floor.position_m: no monitor has this name; use \"floor.position_um\" (nearest match)"},
       {"[expect]\n\"floor.position_um\" = { value = 1, within = 1 }",
-       "test.toml:2: expect.floor.position_um: no monitor has this name; define the monitor as [monitor.NAME]"},
+       "2: expect.floor.position_um: no monitor has this name; define the monitor as [monitor.NAME]"},
       {floor_monitor + "[expect]\nfloor.position_um = { value = 1 }",
-       "test.toml:5: expect.floor.position_um: has no tolerance; set within or within_percent"},
+       "5: expect.floor.position_um: has no tolerance; set within or within_percent"},
   };
   expect_errors(cases, load_errors);
 }
@@ -334,7 +314,7 @@ TEST(Watch, MakesMonitorsAndCriteriaOfAScenario) {
   EXPECT_EQ(watch.stop.criteria[1].above, 60);
 }
 
-std::string error_of(const std::string& override_text) {
+std::string program_errors(const std::string& override_text) {
   return errors_in([&] {
     return load_scenario(find_scenario("drosophila"),
                          std::vector<std::string>{override_text, "contraction.apical.program.activity=[1, 1, 0]"});
@@ -342,12 +322,10 @@ std::string error_of(const std::string& override_text) {
 }
 
 TEST(TimeRules, AProgramMayJumpButNotTwiceAtOnce) {
-  EXPECT_EQ(error_of("contraction.apical.program.time_s=[0, 10, 10]"), "");
-  EXPECT_NE(error_of("contraction.apical.program.time_s=[10, 10, 10]").find("10 occurs three times"),
-            std::string::npos);
-  EXPECT_NE(error_of("contraction.apical.program.time_s=[0, 10, 10.0000001]").find("closer than 1e-06 s"),
-            std::string::npos);
-  EXPECT_NE(error_of("contraction.apical.program.time_s=[0, 10, 9]").find("do not increase"), std::string::npos);
+  EXPECT_EQ(program_errors("contraction.apical.program.time_s=[0, 10, 10]"), "");
+  EXPECT_SAYS(program_errors("contraction.apical.program.time_s=[10, 10, 10]"), "10 occurs three times");
+  EXPECT_SAYS(program_errors("contraction.apical.program.time_s=[0, 10, 10.0000001]"), "closer than 1e-06 s");
+  EXPECT_SAYS(program_errors("contraction.apical.program.time_s=[0, 10, 9]"), "do not increase");
 }
 
 TEST(TimeRules, ARunLastsLongerThanAnInstant) {
@@ -359,4 +337,3 @@ TEST(TimeRules, ARunLastsLongerThanAnInstant) {
 }
 
 }  // namespace
-}  // namespace plica

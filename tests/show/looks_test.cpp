@@ -1,10 +1,6 @@
 // Looks of pictures and reports: colours, views, outlines, packed arrays.
 #include "show/looks.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.hpp"
@@ -13,9 +9,7 @@
 #include "show/packing.hpp"
 #include "support/frames.hpp"
 #include "support/tissues.hpp"
-#include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
 
 // CIE L*, a*, b* of an sRGB colour (white D65): the way back from what looks.cpp does, from CIE 15's formulas.
@@ -122,7 +116,7 @@ TEST(ColourFields, ComeFromArraysThatFramesHave) {
 // However a sheet lies, the view `apical` looks at its apices, with x to the right where that can be; and it comes
 // first.
 TEST(Views, OfAnOpenSheetBeginAtItsApicalSide) {
-  Frame sheet = support::frame_of(support::distorted_block({60, 40, 10, {6, 4, 1}, {1, 1, 2}}, 1, 3));
+  Frame sheet = frame_of(distorted_block({60, 40, 10, {6, 4, 1}, {1, 1, 2}}, 1, 3));
   const Vectors flat = sheet.positions;
   int cases = 0;
   for (const Mat3& turn : {Mat3(Mat3::Identity()), Mat3(Eigen::AngleAxisd(2.5, Vec3::UnitX())),
@@ -139,7 +133,7 @@ TEST(Views, OfAnOpenSheetBeginAtItsApicalSide) {
 }
 
 TEST(Views, OfAClosedEmbryoBeginAtTheBelly) {
-  const std::vector<View> of_embryo = views_of(support::frame_of(build_shell({460, 280, 40, {6, 3, 4}, {1, 1, 1}})));
+  const std::vector<View> of_embryo = views_of(frame_of(build_shell({460, 280, 40, {6, 3, 4}, {1, 1, 1}})));
   ASSERT_EQ(of_embryo.size(), views().size());
   for (std::size_t i = 0; i < views().size(); ++i) EXPECT_EQ(of_embryo[i].name, views()[i].name);
   EXPECT_EQ(of_embryo.front().name, "antero-ventral");
@@ -159,7 +153,7 @@ TEST(Views, AreNamedByTheAxes) {
   EXPECT_EQ(views[1].label, "from \u2212z, \u2212x to the left");
   for (const View& view : views)
     for (const char* word : {"ventral", "anterior", "front", "left side", "below"})
-      EXPECT_EQ((view.heading() + view.label).find(word), std::string::npos) << view.label;
+      EXPECT_SAYS_NOT((view.heading() + view.label), word) << view.label;
   EXPECT_EQ(cross_section_at(5, plain_axes()).label, "cut across at x = 5 µm, from \u2212x");
   EXPECT_EQ(picture_letters(plain_axes()), EmbryoAxes{});
   EXPECT_EQ(picture_letters(anatomical_axes())[2][1], "D");
@@ -304,4 +298,3 @@ TEST(Quantiser, IsExactAtItsEndsAndWithinHalfAStepBetween) {
 }
 
 }  // namespace
-}  // namespace plica

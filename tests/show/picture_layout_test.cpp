@@ -1,18 +1,11 @@
 // Where things stand in a picture, and what a panel shows; nothing of it needs VTK.
 #include "show/picture_layout.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <iostream>
-
 #include "core/errors.hpp"
 #include "show/picture_scene.hpp"
 #include "support/frames.hpp"
 #include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
 
 const ColourField& field(const std::string& name) {
@@ -29,7 +22,7 @@ Picture picture_of(const Frame& frame, const std::vector<std::string>& rows, int
   return picture;
 }
 
-Frame pill() { return support::frame_of(build_shell({460, 280, 40, {6, 3, 3}, {1, 1, 1}})); }
+Frame pill() { return frame_of(build_shell({460, 280, 40, {6, 3, 3}, {1, 1, 1}})); }
 
 std::vector<std::string> texts_of(const Layout& layout) {
   std::vector<std::string> texts;
@@ -163,7 +156,7 @@ TEST(Scene, IsTheOuterSurfaceOrTheSectionAlone) {
 }
 
 TEST(Scene, OutlinesOfASectionPartCellsAndNotTheElementsOfOne) {
-  const Frame fine = support::frame_of(build_shell({460, 280, 40, {6, 3, 3}, {2, 2, 2}}));
+  const Frame fine = frame_of(build_shell({460, 280, 40, {6, 3, 3}, {2, 2, 2}}));
   const Picture picture = picture_of(fine, {"cross-section"}, 1);
   const Scene section = make_scene(picture, picture.columns[0], picture.rows[0].view, 3);
   // Walls of two pieces, outer and inner sides of two pieces each.
@@ -230,4 +223,3 @@ TEST(Scene, HasTheRestOutlineOrTheShell) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,29 +1,17 @@
 // A side of a symmetric tissue is the whole, and a period is the endless tissue.
 #include "simulation/full_model.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cstdio>
-
 #include "core/threads.hpp"
 #include "measure/self_intersections.hpp"
 #include "mechanics/active/cortex.hpp"
-#include "record/archive.hpp"
-#include "record/checkpoint.hpp"
-#include "scenario/load.hpp"
-#include "scenario/setup.hpp"
-#include "simulation/simulation.hpp"
 #include "support/models.hpp"
 #include "support/ran.hpp"
-#include "support/small_furrow.hpp"
-#include "support/tissues.hpp"
+#include "support/resumed.hpp"
+#include "support/scenarios.hpp"
 #include "tissue/shapes/polygon_sheet.hpp"
 #include "tissue/shapes/rectangle_polygons.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 // A belly that is drawn in, with every law that a mirror goes with.
 const std::string furrow = small_furrow + R"([contraction.net]
@@ -45,7 +33,7 @@ region = "belly"
 pressure_Pa = 3
 )";
 
-Scenario scenario_of(const std::string& text, std::vector<std::string> overrides) {
+Scenario second_order(const std::string& text, std::vector<std::string> overrides) {
   overrides.insert(overrides.begin(), "time.integrator=bdf2");
   return load_scenario({"furrow", "furrow.toml", text}, overrides);
 }
@@ -83,7 +71,7 @@ TEST(FullModel, EachLawOfASideIsThatOfAHalfOrAQuarter) {
             {planes[1], "embryo.elements_per_cell=[2,1,2]", "dynamics.density_kg_per_m3=1000",
              "time.integrator=backward-euler", "elasticity.model=shape-memory"}},
            {slice, {planes[0]}}}) {
-    const Scenario scenario = scenario_of(text, overrides);
+    const Scenario scenario = second_order(text, overrides);
     const auto whole = make_model(scenario);
     const auto solved = make_solved_side(scenario, *whole);
     ASSERT_TRUE(solved);
@@ -145,28 +133,24 @@ TEST(FullModel, EachLawOfASideIsThatOfAHalfOrAQuarter) {
 // Of two runs to the same time, the columns that say where they are.
 void expect_same_end(const Simulation& a, const Simulation& b, double length_um) {
   const Observation one = a.measures(), other = b.measures();
-  const std::vector<std::pair<std::string, double>> tolerances = {{"furrow_depth_um", length_um},
-                                                                  {"furrow_depth_below_lips_um", length_um},
-                                                                  {"lip_distance_um", 2 * length_um},
-                                                                  {"vml_height_um", length_um},
-                                                                  {"vml_displacement_um", length_um},
-                                                                  {"vce_displacement_um", length_um},
-                                                                  {"vml_apical_area_ratio", 0.002},
-                                                                  {"min_apical_area_ratio", 0.002},
-                                                                  {"min_corner_jacobian_ratio", 0.01},
-                                                                  {"enclosed_volume_ratio", 1e-6},
-                                                                  {"yolk_pressure_Pa", 0.1},
-                                                                  {"closed_length_ratio", 0.02},
-                                                                  {"flank_volume_ratio", 0.0005},
-                                                                  {"cells", 0},
-                                                                  {"lips_closed", 0}};
-  for (const auto& [column, tolerance] : tolerances) {
-    SCOPED_TRACE(column);
-    ASSERT_EQ(one[column].has_value(), other[column].has_value());
-    if (one[column]) {
-      EXPECT_NEAR(*one[column], *other[column], tolerance);
+  const std::pair<double, std::vector<const char*>> tolerances[] = {
+      {length_um,
+       {"furrow_depth_um", "furrow_depth_below_lips_um", "vml_height_um", "vml_displacement_um",
+        "vce_displacement_um"}},
+      {2 * length_um, {"lip_distance_um"}},
+      {0.002, {"vml_apical_area_ratio", "min_apical_area_ratio"}},
+      {0.01, {"min_corner_jacobian_ratio"}},
+      {1e-6, {"enclosed_volume_ratio"}},
+      {0.1, {"yolk_pressure_Pa"}},
+      {0.02, {"closed_length_ratio"}},
+      {0.0005, {"flank_volume_ratio"}},
+      {0, {"cells", "lips_closed"}}};
+  for (const auto& [tolerance, columns] : tolerances)
+    for (const char* column : columns) {
+      SCOPED_TRACE(column);
+      ASSERT_EQ(one[column].has_value(), other[column].has_value());
+      EXPECT_NEAR(one[column].value_or(0), other[column].value_or(0), tolerance);
     }
-  }
   EXPECT_LE(*other["max_volume_error"], 1e-9);
   EXPECT_EQ(*other["self_intersections"], 0);
 }
@@ -205,17 +189,14 @@ TEST(FullModel, AFurrowClosesAsItDoesWithoutPlanes) {
 
 TEST(FullModel, AFurrowBetweenTwoPlanesIsThatOfTheWhole) {
   const std::vector<std::string> fine = {"time.tolerance_um=0.01", "enclosed.yolk.volume=compliant", compliant};
-  Simulation plain(scenario_of(furrow, fine));
+  Simulation plain(second_order(furrow, fine));
   ASSERT_EQ(plain.run(), RunStatus::end_time) << plain.failure();
   for (const std::string& plane : planes) {
     SCOPED_TRACE(plane);
-    Simulation mirrored(scenario_of(furrow, with(fine, plane)));
+    Simulation mirrored(second_order(furrow, with(fine, plane)));
     ASSERT_EQ(mirrored.run(), RunStatus::end_time) << mirrored.failure();
     expect_same_end(plain, mirrored, 0.02);
-    double apart = 0;
-    for (std::size_t n = 0; n < plain.state().positions.size(); ++n)
-      apart = std::max(apart, (plain.state().positions[n] - mirrored.state().positions[n]).norm());
-    EXPECT_LT(apart, 0.05);
+    EXPECT_LT(largest_distance(plain.state().positions, mirrored.state().positions), 0.05);
     const std::vector<double>&forces = mirrored.state().contact_forces, &plain_forces = plain.state().contact_forces;
     double sum = 0, plain_sum = 0;
     for (std::size_t k = 0; k < forces.size(); ++k) sum += forces[k], plain_sum += plain_forces[k];
@@ -232,7 +213,7 @@ TEST(FullModel, ACrossingOfThePlaneIsSeen) {
 }
 
 TEST(FullModel, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
-  const Scenario scenario = scenario_of(furrow, {planes[1], "enclosed.yolk.volume=compliant", compliant});
+  const Scenario scenario = second_order(furrow, {planes[1], "enclosed.yolk.volume=compliant", compliant});
   std::optional<RunMemory> kept;
   Observation measures;
   std::optional<Simulation> fork;
@@ -252,17 +233,12 @@ TEST(FullModel, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_EQ(whole.state().internals, on_three.state().internals);
   ASSERT_TRUE(kept);
 
-  Checkpoint checkpoint{"", "", "", *kept, {}};
-  checkpoint.record.rows.push_back(measures);
-  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
   Simulation resumed(scenario);
-  resumed.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  go_on_by_bytes(resumed, *kept, measures);
   for (Simulation* rest : {&resumed, &*fork}) {
     EXPECT_EQ(rest->run(), whole.status());
     EXPECT_EQ(rest->steps(), whole.steps());
-    EXPECT_EQ(rest->state().positions, whole.state().positions);
-    EXPECT_EQ(rest->state().velocities, whole.state().velocities);
-    EXPECT_EQ(rest->state().internals, whole.state().internals);
+    expect_same(rest->state(), whole.state());
     EXPECT_EQ(rest->measures().values, whole.measures().values);
   }
 
@@ -286,11 +262,8 @@ Vectors moves(const SheetShape& shape, const Vectors& points, LinearMethod metho
   model.laws.push_back(std::make_unique<Cortex>(tissue, CellSet(points.size(), true),
                                                 CortexRule{.side = CellSide::lateral, .tension = 0.3}));
   add_drag(model);
-  RunControls controls;
-  controls.scheme.linear_method = method;
-  controls.fixed_step_s = 2;
-  controls.end_s = 20;
-  controls.stop_at_equilibrium = false;
+  RunControls controls{
+      .scheme = {.linear_method = method}, .fixed_step_s = 2, .end_s = 20, .stop_at_equilibrium = false};
   const Simulation simulation = ran(std::move(model), controls);
   EXPECT_EQ(simulation.status(), RunStatus::end_time) << simulation.failure();
   Vectors result;
@@ -298,13 +271,6 @@ Vectors moves(const SheetShape& shape, const Vectors& points, LinearMethod metho
   for (const Cell& cell : after.cells)
     result.push_back(cell_centre(cell, simulation.state().positions) - cell_centre(cell, after.rest_positions));
   return result;
-}
-
-double apart(std::span<const Vec3> one, std::span<const Vec3> other) {
-  EXPECT_EQ(one.size(), other.size());
-  double most = 0;
-  for (std::size_t i = 0; i < one.size(); ++i) most = std::max(most, (one[i] - other[i]).norm());
-  return most;
 }
 
 // The middle of a longer sheet is the same, when that is endless, too.
@@ -315,7 +281,7 @@ TEST(PeriodicRun, TwoPeriodsDoWhatOneDoes) {
     for (const Vec3& x : points) twice.push_back(x + shift * Vec3::UnitX());
   const Vectors one = moves(sheet, points), both = moves({2 * length, width, {0, 0}, {true, true}}, twice);
   for (const std::size_t first : {std::size_t{0}, points.size()}) {
-    const double difference = apart(one, std::span(both).subspan(first, points.size()));
+    const double difference = largest_distance(one, std::span(both).subspan(first, points.size()));
     std::printf("%.1e um apart\n", difference);
     EXPECT_LT(difference, 1e-9);
   }
@@ -324,19 +290,13 @@ TEST(PeriodicRun, TwoPeriodsDoWhatOneDoes) {
 TEST(PeriodicRun, IsTheSameWithEveryLinearSolver) {
   const Vectors points = even_points(rectangle, 70, 1), expected = moves(sheet, points, LinearMethod::direct);
   for (const LinearMethod method : {LinearMethod::cholesky, LinearMethod::multigrid})
-    EXPECT_LT(apart(expected, moves(sheet, points, method)), 1e-6);
+    EXPECT_LT(largest_distance(expected, moves(sheet, points, method)), 1e-6);
 }
 
 // With contact and second order in time; so many cells that threads share loops.
 TEST(PeriodicRun, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
-  const Scenario scenario = load_scenario({"test", "test.toml", R"(format = 1
-[embryo]
-shape = "sheet"
-length_um = 60
-width_um = 80
-cell_count = 240
-cell_height_um = 10
-periodic = ["x"]
+  const Scenario scenario =
+      load_scenario({"test", "test.toml", "format = 1\n" + sheet_table(60, 80, 10, 240) + R"(periodic = ["x"]
 rim = "held"
 [region.stripe]
 y_um = [-7, 7]
@@ -353,26 +313,18 @@ at_equilibrium = false
 )"});
   Simulation whole(scenario);
   for (int step = 0; step < 5; ++step) ASSERT_TRUE(whole.step()) << whole.failure();
-  Checkpoint checkpoint{"", "", "", whole.memory(), {}};
-  checkpoint.record.rows.push_back(whole.measures());
-  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
   Simulation resumed(scenario), fork = whole;
-  resumed.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  go_on_by_bytes(resumed, whole.memory(), whole.measures());
   ASSERT_EQ(whole.run(), RunStatus::end_time) << whole.failure();
   ASSERT_EQ(resumed.run(), RunStatus::end_time) << resumed.failure();
   const ThreadCount two(2);
   ASSERT_EQ(fork.run(), RunStatus::end_time) << fork.failure();
-  for (const Simulation* other : {&resumed, &fork}) {
-    EXPECT_EQ(other->state().positions, whole.state().positions);
-    EXPECT_EQ(other->state().velocities, whole.state().velocities);
-    EXPECT_EQ(other->state().multipliers, whole.state().multipliers);
-  }
+  for (const Simulation* other : {&resumed, &fork}) expect_same(other->state(), whole.state());
   // Images have stayed where they belong, but for rounding.
   const Tissue& tissue = whole.model().tissue;
   Vectors placed = whole.state().positions;
   tissue.place_hanging_positions(placed);
-  EXPECT_LT(apart(placed, whole.state().positions), 1e-10);
+  EXPECT_LT(largest_distance(placed, whole.state().positions), 1e-10);
 }
 
 }  // namespace
-}  // namespace plica

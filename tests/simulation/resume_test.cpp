@@ -1,14 +1,10 @@
 // A run that goes on from a memory of itself ends in the same bits as one that was never interrupted.
-#include <gtest/gtest.h>
-
 #include "core/threads.hpp"
-#include "record/checkpoint.hpp"
 #include "scenario/load.hpp"
-#include "simulation/simulation.hpp"
 #include "support/loads.hpp"
+#include "support/resumed.hpp"
 #include "support/roofs.hpp"
 
-namespace plica {
 namespace {
 
 // What a run leaves behind: everything that happened after each step.
@@ -44,22 +40,6 @@ Trace trace(const std::string& name, const std::vector<std::string>& overrides, 
   return trace;
 }
 
-void expect_same(const State& a, const State& b) {
-  EXPECT_EQ(a.time_s, b.time_s);
-  EXPECT_EQ(a.positions, b.positions);
-  EXPECT_EQ(a.velocities, b.velocities);
-  EXPECT_EQ(a.multipliers, b.multipliers);
-  EXPECT_EQ(a.contact_forces, b.contact_forces);
-  EXPECT_EQ(a.in_contact, b.in_contact);
-  EXPECT_EQ(a.divided_until_s, b.divided_until_s);
-  EXPECT_EQ(a.trend.step_s, b.trend.step_s);
-  EXPECT_EQ(a.trend.earlier_s, b.trend.earlier_s);
-  EXPECT_EQ(a.trend.mean_velocities, b.trend.mean_velocities);
-  EXPECT_EQ(a.trend.accelerations, b.trend.accelerations);
-  EXPECT_EQ(a.trend.multiplier_rates, b.trend.multiplier_rates);
-  EXPECT_EQ(a.internals, b.internals);
-}
-
 // Goes on from every `every`th step of the run.
 void expect_resumable(const std::string& name, const std::vector<std::string>& overrides, std::size_t every) {
   const Trace whole = trace(name, overrides);
@@ -93,9 +73,7 @@ TEST(Resume, WithAnotherOrder) {
   for (const Trace& changed : {trace("drosophila", second, &of_first, half(of_first)),
                                trace("drosophila", first, &of_second, half(of_second))}) {
     EXPECT_EQ(changed.status, RunStatus::end_time) << changed.failure;
-    double apart = 0;
-    for (std::size_t n = 0; n < changed.end.state.positions.size(); ++n)
-      apart = std::max(apart, (changed.end.state.positions[n] - of_second.end.state.positions[n]).norm());
+    const double apart = largest_distance(changed.end.state.positions, of_second.end.state.positions);
     EXPECT_LT(apart, 0.3) << "backward Euler alone is off by as much";
     EXPECT_GT(apart, 1e-6) << "it went on with the order of before";
   }
@@ -129,15 +107,15 @@ TEST(Resume, WithCellsThatFlowAcrossDivisions) {
 // Two roofs that only their edges keep apart: on three threads, from a memory, and by the bytes of a checkpoint.
 TEST(Resume, WithEdgesThatPress) {
   const auto fresh = [] {
-    support::Roofs roofs(0.5);
+    Roofs roofs(0.5);
     // So many elements beside them that threads share the loops.
     roofs.bodies.add({16, 16, 9}, [](int i, int j, int k) { return Vec3(100 + 10 * i, 10 * j, 10 * k); });
     Simulation::Parts parts;
-    parts.model = std::make_unique<Model>(support::model_of(roofs, {.stiffness = 2, .search = 6, .friction = 0.3}));
+    parts.model = std::make_unique<Model>(model_of(roofs, {.stiffness = 2, .search = 6, .friction = 0.3}));
     Vectors loads(parts.model->tissue.node_count(), Vec3::Zero());
     for (std::size_t n = roofs.upper; n < roofs.upper + 12; ++n)
-      if (parts.model->tissue.rest_positions[n].z() > support::Roofs::height) loads[n] = {0, 0.1, -0.5};
-    parts.model->laws.push_back(std::make_unique<support::NodalForces>(loads));
+      if (parts.model->tissue.rest_positions[n].z() > Roofs::height) loads[n] = {0, 0.1, -0.5};
+    parts.model->laws.push_back(std::make_unique<NodalForces>(loads));
     parts.controls.fixed_step_s = 4;
     parts.controls.end_s = 90;
     parts.controls.stop_at_equilibrium = false;
@@ -145,17 +123,14 @@ TEST(Resume, WithEdgesThatPress) {
   };
   const auto press = [](const Simulation& simulation) {
     const std::vector<ContactPair> edges =
-        support::edges_of(simulation.state().internals.at(simulation.state().internals.size() - 2));
+        edges_of(simulation.state().internals.at(simulation.state().internals.size() - 2));
     return std::ranges::any_of(edges, [](const ContactPair& pair) { return pair.first_gap < pair.distance; });
   };
   Simulation whole = fresh();
   while (!press(whole)) ASSERT_TRUE(whole.step()) << whole.failure();
-  Checkpoint checkpoint{"", "", "", whole.memory(), {}};
-  checkpoint.record.rows.push_back(whole.measures());
   Simulation fork = whole, resumed = fresh(), from_bytes = fresh();
   resumed.go_on_from(whole.memory(), whole.measures());
-  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
-  from_bytes.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  go_on_by_bytes(from_bytes, whole.memory(), whole.measures());
   int steps = 0, pressed = 0;
   while (whole.step()) {
     ++steps, pressed += press(whole);
@@ -205,4 +180,3 @@ TEST(Resume, AcrossDivisions) {
 }
 
 }  // namespace
-}  // namespace plica

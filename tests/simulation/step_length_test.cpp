@@ -1,11 +1,7 @@
 #include "simulation/step_length.hpp"
 
-#include <gtest/gtest.h>
+#include "support/testing.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-namespace plica {
 namespace {
 
 /// States of one node at the ends of steps along x.
@@ -35,9 +31,7 @@ double proposed(const StepLength& length, const RunControls& controls, double ti
 }
 
 TEST(StepLength, FixedStepsStayOnTheirGridAndEndOnTime) {
-  RunControls controls;
-  controls.fixed_step_s = 0.3;
-  controls.end_s = 1;
+  RunControls controls{.fixed_step_s = 0.3, .end_s = 1};
   const StepLength length(controls);
   EXPECT_DOUBLE_EQ(proposed(length, controls, 0), 0.3);
   EXPECT_NEAR(proposed(length, controls, 0.6), 0.3, 1e-12);
@@ -46,8 +40,7 @@ TEST(StepLength, FixedStepsStayOnTheirGridAndEndOnTime) {
 }
 
 TEST(StepLength, AFailedStepIsHalvedUntilItIsNotWorthIt) {
-  RunControls controls;
-  controls.fixed_step_s = 1;
+  RunControls controls{.fixed_step_s = 1};
   StepLength length(controls);
   double tried = proposed(length, controls, 0);
   int halvings = 0;
@@ -62,8 +55,7 @@ TEST(StepLength, AFailedStepIsHalvedUntilItIsNotWorthIt) {
 
 // Ten sums of 0.3 make 2.9999999999999996; the clock shows the grid's 3.
 TEST(StepLength, TheClockOfFixedStepsDoesNotDrift) {
-  RunControls controls;
-  controls.fixed_step_s = 0.3;
+  RunControls controls{.fixed_step_s = 0.3};
   const StepLength length(controls);
   double time_s = 0;
   int steps = 0;
@@ -76,10 +68,7 @@ TEST(StepLength, TheClockOfFixedStepsDoesNotDrift) {
 
 // A frame at 59.9999999 s, the end at 60 s: one stop, the later.
 TEST(StepLength, StopsOfOneInstantAreOne) {
-  RunControls controls;
-  controls.end_s = 60;
-  controls.frame_every_s = 59.9999999;
-  controls.program_points_s = {10, 10 + 3e-7, 10 + 1e-3};
+  RunControls controls{.end_s = 60, .frame_every_s = 59.9999999, .program_points_s = {10, 10 + 3e-7, 10 + 1e-3}};
   const StepLength length(controls, 1000);
   std::vector<double> ends;
   for (double time_s = 0; time_s < 60; ends.push_back(time_s)) {
@@ -90,38 +79,10 @@ TEST(StepLength, StopsOfOneInstantAreOne) {
   EXPECT_EQ(ends, (std::vector<double>{10 + 3e-7, 10 + 1e-3, 60}));
 }
 
-TEST(StepLength, FixedStepsEndOnJumpsToo) {
-  RunControls controls;
-  controls.fixed_step_s = 0.5;
-  controls.program_jumps_s = {0.7};
-  const StepLength length(controls);
-  EXPECT_EQ(length.propose_end_s(controls, 0.5), 0.7);
-  EXPECT_EQ(length.propose_end_s(controls, 0.7), 1);
-}
-
-TEST(StepLength, AdaptiveStepsLandOnFrames) {
-  RunControls controls;
-  controls.first_step_s = 4;
-  controls.frame_every_s = 15;
-  const StepLength length(controls);
-  double time = 0;
-  int steps = 0;
-  while (time < 15 - 1e-9) {
-    const double step = proposed(length, controls, time);
-    EXPECT_LE(step, 4 * (1 + 1e-9));
-    time += step;
-    ASSERT_LT(++steps, 10);
-  }
-  EXPECT_NEAR(time, 15, 1e-12);
-}
-
 // Half h^2 x'' with x'' from the change of velocity between the middles of two steps: for a constant acceleration a and
 // equal steps the error is h^2 a / 2.
 TEST(StepLength, RejectsAStepWhoseErrorIsFarTooLarge) {
-  RunControls controls;
-  controls.first_step_s = 1;
-  controls.position_tolerance_um = 0.01;
-  controls.frame_every_s = 0;
+  RunControls controls{.first_step_s = 1, .position_tolerance_um = 0.01, .frame_every_s = 0};
   StepLength length(controls);
   Path path;
   const State first = path.after(1, 1);
@@ -132,10 +93,7 @@ TEST(StepLength, RejectsAStepWhoseErrorIsFarTooLarge) {
 }
 
 TEST(StepLength, GrowsWhileStepsAreAccurateUpToItsLimit) {
-  RunControls controls;
-  controls.first_step_s = 1;
-  controls.max_step_s = 5;
-  controls.frame_every_s = 0;
+  RunControls controls{.first_step_s = 1, .max_step_s = 5, .frame_every_s = 0};
   StepLength length(controls);
   Path steady;
   double step = proposed(length, controls, 0);
@@ -154,10 +112,7 @@ TEST(StepLength, GrowsWhileStepsAreAccurateUpToItsLimit) {
 // Errors grow with the square of a step to first order and its cube to second, so the next length goes by the root of
 // what is allowed over what was: 0.9 of it, to be on the safe side.
 TEST(StepLength, TheNextOneIsByTheRootOfTheErrorThatIsAllowed) {
-  RunControls controls;
-  controls.first_step_s = 1;
-  controls.position_tolerance_um = 0.01;
-  controls.frame_every_s = 0;
+  RunControls controls{.first_step_s = 1, .position_tolerance_um = 0.01, .frame_every_s = 0};
   for (const TimeOrder order : {TimeOrder::first, TimeOrder::second}) {
     controls.scheme.order = order;
     for (const double part : {0.5, 0.6, 0.8, 1.0, 1.5, 2.0}) {  // the next length over 0.9 of this one
@@ -174,10 +129,7 @@ TEST(StepLength, TheNextOneIsByTheRootOfTheErrorThatIsAllowed) {
 }
 
 TEST(StepLength, OfSecondOrderStepsGrowByNoMoreThanThatOrderAllows) {
-  RunControls controls;
-  controls.scheme.order = TimeOrder::second;
-  controls.first_step_s = 0.05;
-  controls.frame_every_s = 7;
+  RunControls controls{.scheme = {.order = TimeOrder::second}, .first_step_s = 0.05, .frame_every_s = 7};
   StepLength length(controls);
   Path steady(TimeOrder::second);
   for (int k = 0; k < 40; ++k) {
@@ -190,4 +142,3 @@ TEST(StepLength, OfSecondOrderStepsGrowByNoMoreThanThatOrderAllows) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,28 +1,26 @@
-// Calibration, and its search for targets.
+// Runs without files, calibration by them, and its search for targets.
 #include "study/calibrate.hpp"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <cmath>
-#include <filesystem>
-#include <iostream>
-#include <limits>
+#include <cstdlib>
 
-#include "core/errors.hpp"
+#include "core/directory_lock.hpp"
 #include "core/files.hpp"
+#include "record/archive.hpp"
+#include "record/results.hpp"
 #include "scenario/print.hpp"
 #include "study/quiet_run.hpp"
 #include "study/target_search.hpp"
-#include "support/block_scenario.hpp"
+#include "support/own_folder.hpp"
+#include "support/scenarios.hpp"
 
-namespace plica {
 namespace {
 
 namespace fs = std::filesystem;
 
 CalibrationProblem block_problem(const std::vector<std::string>& vary, const std::vector<std::string>& targets) {
-  CalibrationProblem problem{support::pulled_block(), {}, {}, {}};
+  CalibrationProblem problem{pulled_block(), {}, {}, {}};
   for (const std::string& text : vary) problem.keys.push_back(parse_varied_key(text));
   for (const std::string& text : targets) problem.targets.push_back(parse_target(text));
   return problem;
@@ -32,14 +30,7 @@ const std::string stiffness = "contraction.all.stiffness_nN_per_um=0.1:20";
 const std::string across = "contraction.all.across_ratio=0.1:4";
 
 // The message of the UsageError or ScenarioError that it throws.
-std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
-}
+std::string refusal(const std::function<void()>& call) { return error_of<std::runtime_error>(call); }
 
 TEST(CalibrationProblem, ReadsKeysAndTargets) {
   const VariedKey key = parse_varied_key("a.b=-1e-3:2.5");
@@ -55,17 +46,13 @@ TEST(CalibrationProblem, ReadsKeysAndTargets) {
 }
 
 TEST(CalibrationProblem, RefusesWhatIsNone) {
-  int cases = 0;
   for (const char* text : {"", "a", "a=1", "=1:2", "a=1:", "a=:1", "a=1:2:3", "a=x:2", "a=1:nan", "a=1:inf", "a=1:1"}) {
     EXPECT_THROW((void)parse_varied_key(text), UsageError) << text;
-    ++cases;
   }
   for (const char* text : {"", "x", "=1", "x=", "x=y", "x=0", "x=0~5%", "x=1~", "x=1~0", "x=1~-1", "x=1~%", "x=nan"}) {
     EXPECT_THROW((void)parse_target(text), UsageError) << text;
-    ++cases;
   }
-  EXPECT_NE(refusal([] { (void)parse_varied_key("a=2:1"); }).find("write a=1:2"), std::string::npos);
-  std::cout << cases << " texts refused\n";
+  EXPECT_SAYS(refusal([] { (void)parse_varied_key("a=2:1"); }), "write a=1:2");
 }
 
 TEST(CalibrationProblem, IsCheckedBeforeTheFirstRun) {
@@ -80,22 +67,18 @@ TEST(CalibrationProblem, IsCheckedBeforeTheFirstRun) {
   EXPECT_EQ(said({stiffness}, {"end.position_um=28"}), "");
   EXPECT_EQ(said({"contraction.all.stifness_nN_per_um=1:2"}, {"end.position_um=28"}),
             "--vary: contraction.all.stifness_nN_per_um: unknown key; use \"stiffness_nN_per_um\" (nearest match)");
-  EXPECT_NE(said({"contraction.all.stiffness_nN_per_um=-1:2"}, {"end.position_um=28"}).find("out of range"),
-            std::string::npos);
-  EXPECT_NE(said({"elasticity.poisson_ratio=0.3:0.7"}, {"end.position_um=28"}).find("out of range"), std::string::npos)
+  EXPECT_SAYS(said({"contraction.all.stiffness_nN_per_um=-1:2"}, {"end.position_um=28"}), "out of range");
+  EXPECT_SAYS(said({"elasticity.poisson_ratio=0.3:0.7"}, {"end.position_um=28"}), "out of range")
       << "the upper bound too";
-  EXPECT_NE(said({"region.x.cells_along=1:3"}, {"end.position_um=28"}).find("vary a real-valued key"),
-            std::string::npos);
-  EXPECT_NE(said({stiffness}, {"end.positon_um=28"}).find("use \"end.position_um\" (nearest match)"),
-            std::string::npos);
-  EXPECT_NE(said({stiffness}, {"wall_s=1"}).find("differs between runs"), std::string::npos);
-  EXPECT_NE(said({stiffness}, {"lip_distance_um=28"}).find("add \"furrow\" to measure.sets"), std::string::npos);
-  EXPECT_NE(said({stiffness}, {"status=1"}).find("not a number of summary.json"), std::string::npos);
-  EXPECT_NE(said({stiffness, stiffness}, {"end.position_um=28"}).find("twice"), std::string::npos);
-  EXPECT_NE(said({stiffness}, {"end.position_um=28", "end.position_um=27"}).find("twice"), std::string::npos);
-  EXPECT_NE(
-      said({stiffness}, {"end.position_um=28"}, {"contraction.all.stiffness_nN_per_um=3"}).find("conflicts with --set"),
-      std::string::npos);
+  EXPECT_SAYS(said({"region.x.cells_along=1:3"}, {"end.position_um=28"}), "vary a real-valued key");
+  EXPECT_SAYS(said({stiffness}, {"end.positon_um=28"}), "use \"end.position_um\" (nearest match)");
+  EXPECT_SAYS(said({stiffness}, {"wall_s=1"}), "differs between runs");
+  EXPECT_SAYS(said({stiffness}, {"lip_distance_um=28"}), "add \"furrow\" to measure.sets");
+  EXPECT_SAYS(said({stiffness}, {"status=1"}), "not a number of summary.json");
+  EXPECT_SAYS(said({stiffness, stiffness}, {"end.position_um=28"}), "twice");
+  EXPECT_SAYS(said({stiffness}, {"end.position_um=28", "end.position_um=27"}), "twice");
+  EXPECT_SAYS(said({stiffness}, {"end.position_um=28"}, {"contraction.all.stiffness_nN_per_um=3"}),
+              "conflicts with --set");
 }
 
 TEST(Calibrate, BeginsAtTheScenariosOwnValues) {
@@ -105,22 +88,9 @@ TEST(Calibrate, BeginsAtTheScenariosOwnValues) {
   EXPECT_EQ(first_place(problem)[0], 0.75);
 }
 
-TEST(Calibrate, MeetsOneTargetWithOneKey) {
-  const CalibrationProblem problem = block_problem({stiffness}, {"end.position_um=28~0.001"});
-  std::vector<Trial> trials;
-  CalibrationHooks hooks;
-  hooks.on_trial = [&](const Trial& trial, bool) { trials.push_back(trial); };
-  const Calibration found = calibrate(problem, hooks);
-  ASSERT_EQ(found.end, CalibrationEnd::met);
-  EXPECT_LE(found.trials, 8);
-  EXPECT_EQ(static_cast<int>(trials.size()), found.trials);
-  EXPECT_EQ(trials.back().values, found.best->values);
-  const double again = quiet_run(load_trial(problem, found.best->values)).summary.at("end.position_um");
-  EXPECT_EQ(again, *found.best->found[0]) << "what is written is what was run";
-  EXPECT_NEAR(again, 28, 0.001);
-}
+using CalibratedFile = OwnFolder;
 
-TEST(Calibrate, MeetsTwoTargetsWithTwoKeysAndWritesTheScenario) {
+TEST_F(CalibratedFile, MeetsTwoTargetsWithTwoKeys) {
   const CalibrationProblem problem =
       block_problem({stiffness, across}, {"end.position_um=28~0.01", "side.position_um=19.5~0.01"});
   const Calibration found = calibrate(problem);
@@ -129,15 +99,14 @@ TEST(Calibrate, MeetsTwoTargetsWithTwoKeysAndWritesTheScenario) {
   EXPECT_LE(found.trials, 25);
   EXPECT_EQ(calibrate(problem).best->values, found.best->values) << "the search is the same each time";
 
-  const fs::path folder = fs::path(testing::TempDir()) / ("plica_calibrate_" + std::to_string(::getpid()));
   fs::create_directories(folder / "of mine");
   CalibrationProblem of_file = problem;
   of_file.source.file = (folder / "block.toml").string();
   write_file(of_file.source.file, of_file.source.text);
   const std::string file = (folder / "of mine" / "calibrated.toml").string();
   const std::string text = calibrated_toml(of_file, found, file);
-  EXPECT_NE(text.find("base = \"../block.toml\""), std::string::npos) << text;
-  EXPECT_NE(text.find("# Target: side.position_um = 19.5 within 0.01; result 19."), std::string::npos) << text;
+  EXPECT_SAYS(text, "base = \"../block.toml\"");
+  EXPECT_SAYS(text, "# Target: side.position_um = 19.5 within 0.01; result 19.");
   const Scenario written = load_scenario({"calibrated", file, text});
   const auto summary = quiet_run(written).summary;
   EXPECT_EQ(summary.at("end.position_um"), *found.best->found[0]);
@@ -152,7 +121,6 @@ TEST(Calibrate, MeetsTwoTargetsWithTwoKeysAndWritesTheScenario) {
   of_file.overrides.erase(of_file.overrides.begin());
   const Scenario short_one = load_scenario({"calibrated", file, calibrated_toml(of_file, found, file)});
   EXPECT_EQ(short_one.elasticity.model, "shape-memory") << "bare words are quoted";
-  fs::remove_all(folder);
 }
 
 TEST(Calibrate, RunsThatFailHaveNoValue) {
@@ -172,20 +140,12 @@ TEST(Calibrate, RunsThatFailHaveNoValue) {
   EXPECT_EQ(found.best->values, std::vector<double>{0});
 }
 
-TEST(Calibrate, KeepsToItsTrialsAndStopsWhenAsked) {
+TEST(Calibrate, KeepsToItsTrials) {
   CalibrationProblem problem = block_problem({stiffness}, {"end.position_um=28~1e-9"});
   problem.most_trials = 3;
   const Calibration spent = calibrate(problem);
   EXPECT_EQ(spent.end, CalibrationEnd::trials_spent);
   EXPECT_EQ(spent.trials, 3);
-  bool stop = false;
-  CalibrationHooks hooks;
-  hooks.stop_requested = [&] { return stop; };
-  hooks.on_trial = [&](const Trial& trial, bool) { stop = trial.number == 2; };
-  const Calibration stopped = calibrate(problem, hooks);
-  EXPECT_EQ(stopped.end, CalibrationEnd::interrupted);
-  EXPECT_EQ(stopped.trials, 2);
-  EXPECT_EQ(stopped.best->values.size(), 1U);
 }
 
 using Place = std::vector<double>;
@@ -257,17 +217,108 @@ TEST(TargetSearch, GoesOnWhereThereIsNoValue) {
   const auto hole = [](double low, double high) {
     return [=](const Place& x) { return x[0] > low && x[0] < high ? Place{} : Place{100 * (x[0] - 0.3)}; };
   };
-  int cases = 0;
   // At an end, inside the bracket, at the start of the search without a bracket.
   for (const auto& run : {hole(0.9, 2), hole(-1, 0.05), hole(0.35, 0.7)}) {
-    EXPECT_LE(search({0.5}, 1, run).best, 1) << cases;
-    ++cases;
+    EXPECT_LE(search({0.5}, 1, run).best, 1);
   }
-  std::cout << cases << " cases\n";
   const Searched none = search({0.5, 0.5}, 2, [](const Place&) { return Place{}; });
   EXPECT_TRUE(std::isinf(none.best));
   EXPECT_LE(none.looks, 25);
 }
 
+TEST(QuietRun, ComesToWhatPlicaRunWrites) {
+  namespace fs = std::filesystem;
+  const ScenarioSource source = pulled_block();
+  const RunSummary quiet = quiet_run(load_scenario(source));
+  const fs::path folder = fs::path(testing::TempDir()) / ("plica_quiet_" + std::to_string(::getpid()));
+  write_file(folder.string() + ".toml", source.text);
+  const std::string command =
+      std::string(PLICA_PROGRAM) + " run " + folder.string() + ".toml --quiet --out " + folder.string();
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  auto written = read_summary(folder), ours = quiet.summary;
+  EXPECT_EQ(read_series(folder / "series.csv").rows.size(), quiet.rows.size());
+  fs::remove_all(folder);
+  fs::remove(folder.string() + ".toml");
+  for (auto* summary : {&written, &ours})
+    for (const char* key : {"scenario", "wall_s", "wall_solver_s", "peak_memory_MB", "provenance"}) summary->erase(key);
+  EXPECT_EQ(written, ours);
+  EXPECT_EQ(quiet.state.time_s, quiet.rows.back().time_s());
+}
+
+TEST(QuietRun, AtRestHasTheSameKeys) {
+  const Scenario scenario = load_scenario(pulled_block());
+  const RunSummary ran = quiet_run(scenario), rest = run_at_rest(scenario);
+  std::vector<std::string> ran_keys, rest_keys;
+  for (const auto& [key, value] : ran.summary.items()) ran_keys.push_back(key);
+  for (const auto& [key, value] : rest.summary.items()) rest_keys.push_back(key);
+  EXPECT_EQ(ran_keys, rest_keys);
+  EXPECT_EQ(rest.summary.at("all.volume_um3"), 96000);
+}
+
+TEST(QuietRun, StopsWhenAsked) {
+  const Scenario scenario = load_scenario(pulled_block());
+  int rows = 0;
+  const RunSummary run = quiet_run(scenario, {[&] { return rows >= 2; }, [&](const Observation&) { ++rows; }});
+  EXPECT_EQ(run.summary.at("status"), "interrupted");
+  EXPECT_EQ(rows, 2);
+}
+
+/// A run that is stopped after some steps, and then begun again.
+class KeptQuietRun : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!can_archive()) GTEST_SKIP() << "without HDF5";
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  RunSummary run(int most_steps) {
+    steps_ = 0;
+    const auto leave_out = [](const Column& column) { return column.is_costly; };
+    return quiet_run(scenario_, {[=, this] { return steps_ >= most_steps; }, [&](const Observation&) { ++steps_; },
+                                 leave_out, place_, 0});
+  }
+  static std::string results_of(RunSummary run) {
+    for (const char* key : {"wall_s", "wall_solver_s", "peak_memory_MB"}) run.summary.erase(key);
+    return run.summary.dump();
+  }
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("plica_kept_" + std::to_string(::getpid()));
+  const std::filesystem::path place_ = folder_ / "unfinished" / "1";
+  const Scenario scenario_ = load_scenario(pulled_block(), {"time.step_s=0.1"});
+  int steps_ = 0;
+};
+
+TEST_F(KeptQuietRun, GoesOnToTheSameBits) {
+  const RunSummary whole = run(1000);
+  const int all_steps = steps_;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "unfinished"));
+  EXPECT_EQ(run(25).summary.at("status"), "interrupted");
+  EXPECT_TRUE(std::filesystem::exists(place_ / "checkpoint.h5"));
+  const RunSummary rest = run(1000);
+  EXPECT_LT(steps_, all_steps);
+  EXPECT_EQ(results_of(rest), results_of(whole));
+  EXPECT_EQ(rest.rows.size(), whole.rows.size());
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "unfinished"));
+}
+
+TEST_F(KeptQuietRun, BeginsAnewWhereNothingKeptFits) {
+  const RunSummary whole = run(1000);
+  const int all_steps = steps_;
+  run(25);
+  for (const char* name : {"checkpoint.h5", "checkpoint.previous.h5"}) write_file(place_ / name, "damaged");
+  EXPECT_EQ(results_of(run(1000)), results_of(whole));
+  EXPECT_EQ(steps_, all_steps);
+  run(25);
+  RunSummary other = quiet_run(load_scenario(pulled_block(), {"time.step_s=0.1", "elasticity.young_modulus_Pa=900"}),
+                               {{}, {}, {}, place_, 0});
+  EXPECT_NE(results_of(other), results_of(whole));
+  EXPECT_FALSE(std::filesystem::exists(place_)) << "replaced, then removed";
+}
+
+TEST_F(KeptQuietRun, IsNotKeptTwice) {
+  std::filesystem::create_directories(place_);
+  const DirectoryLock lock(place_);
+  run(25);
+  EXPECT_FALSE(std::filesystem::exists(place_ / "checkpoint.h5"));
+}
+
 }  // namespace
-}  // namespace plica

@@ -1,17 +1,11 @@
 #include "study/design.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <set>
-
 #include "core/errors.hpp"
 #include "core/numbers.hpp"
 #include "study/csv_fields.hpp"
 #include "study/study.hpp"
+#include "support/testing.hpp"
 
-namespace plica {
 namespace {
 
 const std::string young = "elasticity.young_modulus_Pa", ratio = "elasticity.poisson_ratio";
@@ -49,8 +43,8 @@ TEST(Design, GridTakesEveryValueWithEveryOther) {
 
 TEST(Design, WholeStepsAreWrittenAsWholeNumbers) {
   const StudyDesign design =
-      design_of(input_of("\"embryo.cells\" = { values = [[4, 4, 1], [6, 6, 1]] }\n"
-                         "\"output.frame_every_s\" = { low = 10, high = 30, step = 10 }",
+      design_of(input_of("\"embryo.cells\" = { values = [[4, 4, 1], [6, 6, 1]] }\n\"output.frame_every_s\" = { low = "
+                         "10, high = 30, step = 10 }",
                          "kind = \"grid\""));
   EXPECT_EQ(design.runs[0].values, (std::vector<std::string>{"[4, 4, 1]", "10"}));
   EXPECT_EQ(design.runs[5].values, (std::vector<std::string>{"[6, 6, 1]", "30"}));
@@ -135,11 +129,8 @@ TEST(Design, NormalDistributionsHaveTheirMeanAndAreCutOff) {
 TEST(Design, ReplicatesHaveSeedsOfTheirOwn) {
   const StudyInput input =
       parse_study("test", "test.toml",
-                  "scenario = \"drosophila\"\n[set]\n\"contraction.apical.variation.spread\" = 0.3\n"
-                  "[vary]\n\"" +
-                      young +
-                      "\" = { values = [900, 1000] }\n"
-                      "[design]\nkind = \"grid\"\nreplicates = 3\n");
+                  "scenario = \"drosophila\"\n[set]\n\"contraction.apical.variation.spread\" = 0.3\n[vary]\n\"" +
+                      young + "\" = { values = [900, 1000] }\n[design]\nkind = \"grid\"\nreplicates = 3\n");
   const StudyDesign design = design_of(input);
   ASSERT_EQ(design.runs.size(), 6u);
   EXPECT_EQ(design.runs[4].point, 2);
@@ -165,12 +156,7 @@ TEST(CsvFields, ReadWhatTheyWrite) {
 
 // The messages of a study that is none.
 std::string refusal(const std::string& text) {
-  try {
-    const Study study(parse_study("test", "test.toml", text));
-  } catch (const ScenarioError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of<ScenarioError>([&] { const Study study(parse_study("test", "test.toml", text)); });
 }
 
 TEST(StudyInput, WhatMayNotBeMeantIsNoted) {
@@ -186,16 +172,14 @@ TEST(StudyInput, WhatMayNotBeMeantIsNoted) {
             "test.toml:3: vary." + young + ".step: does not reach high = 800; the last value is 700\n");
   const std::string spread = notes("drosophila", "\"contraction.apical.variation.spread\" = { values = [0, 0.3] }",
                                    "kind = \"grid\"\nreplicates = 3");
-  EXPECT_NE(spread.find("1 of 2 points have a spread of 0, so their 3 replicates are identical"), std::string::npos)
-      << spread;
+  EXPECT_SAYS(spread, "1 of 2 points have a spread of 0, so their 3 replicates are identical");
 }
 
 // sigma_um takes the place of the sigma_cells that the scenario has, as end_min does of end_s.
 TEST(StudyInput, AKeyThatStandsInForAnotherMayVary) {
-  const Study study(
-      parse_study("test", "test.toml",
-                  "scenario = \"drosophila-living\"\n[vary]\n"
-                  "\"cortex.apical.profile.sigma_um\" = { values = [20, 30] }\n[design]\nkind = \"grid\"\n"));
+  const Study study(parse_study("test", "test.toml",
+                                "scenario = \"drosophila-living\"\n[vary]\n\"cortex.apical.profile.sigma_um\" = { "
+                                "values = [20, 30] }\n[design]\nkind = \"grid\"\n"));
   const ProfileInput profile = study.scenario_of(1).cortices.at("apical").profile;
   EXPECT_EQ(profile.sigma_um, 30);
   EXPECT_FALSE(profile.sigma_cells);
@@ -287,9 +271,7 @@ TEST(StudyInput, WhatIsNoStudySaysWhere) {
            "\" = { low = 0, high = 0.3, count = 9 }\n" + grid,
        "runs"},
   };
-  for (const auto& [text, told] : cases)
-    EXPECT_NE(refusal(text).find(told), std::string::npos) << text << "\n-> " << refusal(text);
+  for (const auto& [text, told] : cases) EXPECT_SAYS(refusal(text), told) << text << "\n-> " << refusal(text);
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,6 +1,7 @@
 // Solid bodies of many layers of cells, whose last layer is apical: for tests of contact.
 #pragma once
 
+#include "support/testing.hpp"
 #include "tissue/lattice.hpp"
 
 namespace plica::support {

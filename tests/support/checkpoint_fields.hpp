@@ -2,11 +2,8 @@
 // here until the member has a name below.
 #pragma once
 
-#include <map>
-#include <string>
-#include <vector>
-
 #include "record/checkpoint.hpp"
+#include "support/testing.hpp"
 
 namespace plica::support {
 

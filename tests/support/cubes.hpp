@@ -1,7 +1,7 @@
 // Patterns of boxes of nodes.
 #pragma once
 
-#include <vector>
+#include "support/testing.hpp"
 
 namespace plica::support {
 

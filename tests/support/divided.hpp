@@ -1,10 +1,6 @@
 // Divided tissues and what must hold of them.
 #pragma once
 
-#include <algorithm>
-#include <map>
-#include <set>
-
 #include "mechanics/division.hpp"
 #include "support/models.hpp"
 #include "support/tissues.hpp"

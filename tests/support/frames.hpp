@@ -1,6 +1,7 @@
 // Frames for tests, made from a mesh without a run.
 #pragma once
 
+#include "support/testing.hpp"
 #include "tissue/files/frame_file.hpp"
 #include "tissue/tissue.hpp"
 

@@ -1,9 +1,5 @@
 #include "support/law_checks.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cstdio>
-
 namespace plica::support {
 namespace {
 

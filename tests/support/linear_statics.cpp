@@ -1,7 +1,5 @@
 #include "support/linear_statics.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Sparse>
 
 #include "mechanics/constraints/cell_volume.hpp"

@@ -1,10 +1,6 @@
 // Linear statics with the laws' assembled tangent at rest: K u = f with some displacements prescribed.
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <vector>
-
 #include "mechanics/elasticity/corotational.hpp"
 #include "support/tissues.hpp"
 

@@ -1,9 +1,5 @@
 #include "support/prisms.hpp"
 
-#include <algorithm>
-#include <map>
-#include <set>
-
 namespace plica::support {
 
 PrismSheet honeycomb(int columns, int rows, double edge_um, double height_um) {

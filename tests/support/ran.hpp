@@ -1,9 +1,8 @@
 // Simulations that have been run, for tests that look at every step.
 #pragma once
 
-#include <functional>
-
 #include "simulation/simulation.hpp"
+#include "support/testing.hpp"
 
 namespace plica::support {
 

@@ -1,8 +1,6 @@
 // Two roofs whose ridges cross between all points: what only contact of edges keeps apart.
 #pragma once
 
-#include <cmath>
-
 #include "mechanics/contact/self_contact.hpp"
 #include "support/bodies.hpp"
 #include "support/models.hpp"

@@ -1,8 +1,7 @@
 // Two tissues that should be the same, to the bit.
 #pragma once
 
-#include <gtest/gtest.h>
-
+#include "support/testing.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica::support {

@@ -1,16 +1,14 @@
-// Scenarios of a few lines, and what is wrong with them.
+// Scenarios that tests share, what is wrong with others, and the remedies that messages name.
 #pragma once
 
-#include <gtest/gtest.h>
+#include <fmt/format.h>
 
-#include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
+#include <regex>
 
 #include "core/errors.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
+#include "support/testing.hpp"
 
 namespace plica::support {
 
@@ -41,12 +39,13 @@ inline std::string side_errors(const std::string& text) {
   });
 }
 
-/// Scenarios and all that is wrong with each, as one of the functions above says.
+/// Scenarios and all that is wrong with each, as one of the functions above says, less the name of the file.
 using WrongScenarios = std::vector<std::pair<std::string, std::string>>;
 
 template <class ErrorsOf>
 void expect_errors(const WrongScenarios& cases, const ErrorsOf& errors_of) {
-  for (const auto& [text, errors] : cases) EXPECT_EQ(errors_of(text), errors) << text;
+  const std::regex file("(^|\n)test\\.toml:");
+  for (const auto& [text, errors] : cases) EXPECT_EQ(std::regex_replace(errors_of(text), file, "$1"), errors) << text;
 }
 
 /// A table of 200 points on a spheroid of half axes 120, 60 and 60 um, and an array that numbers them.
@@ -60,9 +59,117 @@ inline std::string numbered_points(const std::string& array) {
   return table;
 }
 
+/// Tables [embryo] of a block of cells and of a sheet of polygons, in um; more of its keys may follow.
+inline std::string block_table(double length, double width, double height, const std::string& cells) {
+  return fmt::format("[embryo]\nshape = \"block\"\nlength_um = {}\nwidth_um = {}\ncell_height_um = {}\ncells = [{}]\n",
+                     length, width, height, cells);
+}
+inline std::string sheet_table(double length, double width, double height, int cells) {
+  return fmt::format(
+      "[embryo]\nshape = \"sheet\"\nlength_um = {}\nwidth_um = {}\ncell_height_um = {}\ncell_count = {}\n", length,
+      width, height, cells);
+}
+
 /// An egg of 300 cells.
 inline const std::string egg =
     "format = 1\n[embryo]\nshape = \"egg\"\nlength_um = 250\ndiameter_um = 120\ncell_count = 300\ncell_height_um = "
     "20\n";
+
+/// Six cells, pulled together on their apical edges. Monitors: all.volume_um3, and end.position_um and
+/// side.position_um, how far the block's largest x and y are.
+inline ScenarioSource pulled_block(const std::string& more = "") {
+  return {"block", "block.toml", R"(format = 1
+[embryo]
+shape = "block"
+length_um = 60
+width_um = 40
+cell_height_um = 40
+cells = [3, 2, 1]
+[contraction.all]
+region = "all"
+stiffness_nN_per_um = 1
+[time]
+end_s = 5
+step_s = 0.5
+[stop]
+at_equilibrium = false
+[monitor.all]
+quantity = "volume"
+over = "sum"
+[monitor.end]
+quantity = "position"
+axis = "x"
+face = "apical"
+over = "max"
+[monitor.side]
+quantity = "position"
+axis = "y"
+face = "apical"
+over = "max"
+)" + more};
+}
+
+/// A small embryo whose belly is drawn in: seconds, with what a closing furrow has but the yolk.
+inline const std::string small_furrow = R"(format = 1
+[embryo]
+length_um = 300
+diameter_um = 160
+cell_height_um = 30
+cells = [12, 8, 8]
+[region.belly]
+face = "ventral"
+cells_across = 4
+[elasticity]
+young_modulus_Pa = 5
+poisson_ratio = 0
+corner_barrier_Pa = 10
+[vitelline]
+gap_um = 0.5
+[dynamics]
+surface_drag_Pa_s_per_um = 4
+[cortex.apical]
+region = "belly"
+tension_mN_per_m = 1
+saturation_ratio = 0.16
+program = { time_min = [0, 1], activity = [0, 1] }
+profile = { shape = "gaussian", sigma_cells = 2, full_length_um = 200, fade_um = 40 }
+[cortex.basal]
+region = "all"
+faces = "basal"
+stiffness_mN_per_m = 0.3
+relaxation_min = 15
+[cortex.walls]
+region = "all"
+faces = "lateral"
+stiffness_mN_per_m = 0.02
+compression_ratio = 0.1
+[self_contact]
+surface = "both"
+search_um = 20
+[time]
+end_min = 2
+[stop]
+at_equilibrium = false
+)";
+
+inline std::vector<std::string> parts_of(std::string_view text, std::string_view separator) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0, end = 0; end != std::string_view::npos; begin = end + separator.size()) {
+    end = text.find(separator, begin);
+    parts.emplace_back(text.substr(begin, end == std::string_view::npos ? end : end - begin));
+  }
+  return parts;
+}
+
+/// One list of "key = value" for each alternative of "...; set KEY = VALUE and KEY = VALUE (EFFECT), or KEY = ...".
+inline std::vector<std::vector<std::string>> named_remedies(const std::string& message) {
+  std::vector<std::vector<std::string>> remedies;
+  const std::string mark = "; set ";
+  const std::size_t begin = message.rfind(mark);
+  if (begin == std::string::npos) return remedies;
+  for (const std::string& alternative : parts_of(std::string_view(message).substr(begin + mark.size()), ", or "))
+    remedies.push_back(parts_of(alternative.substr(0, alternative.rfind(" (")), " and "));
+  return remedies;
+}
 
 }  // namespace plica::support

@@ -1,7 +1,5 @@
 #include "support/tissues.hpp"
 
-#include <numbers>
-
 #include "tissue/lattice.hpp"
 
 namespace plica::support {
@@ -66,6 +64,13 @@ Motion random_motion(const Tissue& tissue, double size_um, unsigned seed) {
     motion.ahead = 0.4;
   }
   return motion;
+}
+
+double largest_distance(std::span<const Vec3> one, std::span<const Vec3> other) {
+  EXPECT_EQ(one.size(), other.size());
+  double most = 0;
+  for (std::size_t n = 0; n < one.size(); ++n) most = std::max(most, (one[n] - other[n]).norm());
+  return most;
 }
 
 double largest(const Vectors& vectors) {

@@ -1,9 +1,8 @@
 // Tissues and motions that tests share.
 #pragma once
 
-#include <random>
-
 #include "mechanics/law.hpp"
+#include "support/testing.hpp"
 #include "tissue/shapes/embryo.hpp"
 
 namespace plica::support {
@@ -96,6 +95,9 @@ Motion random_motion(const Tissue& tissue, double size_um, unsigned seed);
 
 /// Largest length among vectors.
 double largest(const Vectors& vectors);
+
+/// How far two places of a node are apart, at most.
+double largest_distance(std::span<const Vec3> one, std::span<const Vec3> other);
 
 Vectors forces_of(const Law& law, const Step& step);
 

@@ -1,11 +1,6 @@
 // Whether the faces of a tissue close its cells.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <vector>
-
 #include "support/divided.hpp"
 #include "tissue/faces.hpp"
 

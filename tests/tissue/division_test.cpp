@@ -1,17 +1,12 @@
 // Division of hexahedra and of polygons.
 #include "tissue/division.hpp"
 
-#include <gtest/gtest.h>
-
 #include "simulation/division_rules.hpp"
 #include "support/divided.hpp"
 #include "support/prisms.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const BlockShape three_cells{.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}};
 const BlockShape flat_sheet{.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}};
@@ -145,9 +140,7 @@ TEST(Division, HangingNodesFollowAffineMotion) {
   for (Vec3& x : positions) x = turn * x + Vec3(1, 2, 3);
   Vectors placed = positions;
   tissue.place_hanging(placed);
-  double worst = 0;
-  for (std::size_t n = 0; n < positions.size(); ++n) worst = std::max(worst, (placed[n] - positions[n]).norm());
-  EXPECT_LE(worst, 1e-12);
+  EXPECT_LE(largest_distance(placed, positions), 1e-12);
   for (const NodeMean& mean : tissue.hanging) {
     double sum = 0;
     for (const auto& [node, weight] : mean) {
@@ -369,4 +362,3 @@ TEST(PolygonDivision, IsRefusedOfKitesAndLayers) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,21 +1,12 @@
 // Hexahedra, quality of their meshes, and shapes around them.
 #include "tissue/hexahedron.hpp"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <numbers>
-
 #include "support/tissues.hpp"
 #include "tissue/mesh_quality.hpp"
 #include "tissue/outer_shape.hpp"
 #include "tissue/shapes/egg_surface.hpp"
-#include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 /// A brick of 20 x 20 x 40 um with every corner moved at random: hexahedra with warped faces.
 HexPoints warped(Random& random, double size_um = 6) {
@@ -283,4 +274,3 @@ TEST(OuterShape, IsFarFromWhatLiesDeep) {
 }
 
 }  // namespace
-}  // namespace plica

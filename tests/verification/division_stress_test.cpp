@@ -1,21 +1,11 @@
 // Random cells of the pill divide in random planes, five rounds, to over 10 000 cells; the tissue relaxes in between.
 // Volumes: the paper's scaling of an octahedron, the same for plica's hexahedra, and volumes that add up.
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <map>
-
 #include "mechanics/constraints/cell_volume.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/divided.hpp"
 #include "support/loads.hpp"
-#include "support/tissues.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 // Contraction keeps the sheet moving and bent, so that cuts meet deformed cells.
 Model contracting_pill() {
@@ -195,7 +185,7 @@ double cone(const std::array<Vec3, 4>& p) {
 }
 
 /// Volume inside the faces that belong to one element only.
-double volume_inside_boundary(const Tissue& tissue, const Vectors& positions) {
+double volume_inside_faces(const Tissue& tissue, const Vectors& positions) {
   std::map<std::array<int, 4>, std::pair<int, std::array<NodeId, 4>>> faces;
   for (const auto& element : tissue.elements)
     for (const auto& face : hex_faces) {
@@ -230,7 +220,7 @@ void expect_volumes_add_up(const Tissue& tissue, double size_um, const char* nam
     for (Vec3& x : positions) x += random.vector(size_um);
     double sum = 0;
     for (const double v : CellVolumes(tissue).volumes(positions)) sum += v;
-    worst = std::max(worst, std::abs(sum / volume_inside_boundary(tissue, positions) - 1));
+    worst = std::max(worst, std::abs(sum / volume_inside_faces(tissue, positions) - 1));
     ++cases;
   }
   std::printf("volumes of cells over volume inside the boundary, %s: off by %.1e in %d cases\n", name, worst, cases);
@@ -247,4 +237,3 @@ TEST(Volume, CellsOfABlockFillItExactly) {
 TEST(Volume, CellsOfThePillFillItExactly) { expect_volumes_add_up(build_shell({}), 3, "perturbed pill"); }
 
 }  // namespace
-}  // namespace plica

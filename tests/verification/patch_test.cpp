@@ -1,20 +1,12 @@
 // The patch test of MacNeal and Harder (1985): seven distorted hexahedra in a unit cube, a linear displacement on the
 // boundary. Inner nodes, stresses and the supports' forces must be exact. The same of polygons, and a thick sphere.
-#include <gtest/gtest.h>
-
-#include <cstdio>
-#include <set>
-
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/surroundings.hpp"
 #include "support/law_checks.hpp"
 #include "support/linear_statics.hpp"
 #include "support/prisms.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const ElasticModuli moduli = ElasticModuli::from_young(1e6, 0.25);
 
@@ -324,4 +316,3 @@ TEST(ThickSphere, OneElementThroughTheWallIsLimitedByItsThickness) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,20 +1,12 @@
 #include "mechanics/active/cell_pattern.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "support/law_checks.hpp"
 #include "support/prisms.hpp"
-#include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
-using namespace support;
 using Shape = StrengthProfile::Shape;
 using From = StartDelay::From;
 
@@ -184,12 +176,11 @@ TEST(PatternRule, ChanceIsAFunctionOfSeedAndCell) {
 TEST(PatternRule, AnglesAreAboutTheBelly) {
   const Tissue ring = build_slice({.length_um = 7, .diameter_um = 180, .cell_height_um = 35, .cells = {1, 20, 20}});
   PatternRule pattern;
-  int checked = 0;
   for (const double centre : {0.0, 40.0, -170.0}) {
     pattern.profile = {
         .shape = Shape::plateau, .axis = PatternAxis::angle, .centre = centre, .half_width = 30, .fade = 25};
     const CellPattern found = cell_pattern(ring, CellSet(80, true), pattern);
-    for (int c = 0; c < 80; ++c, ++checked) {
+    for (int c = 0; c < 80; ++c) {
       const Vec3 x = cell_centre(ring.cells[c], ring.rest_positions);
       double d = std::abs(std::atan2(x.y(), -x.z()) * 180 / M_PI - centre);
       if (d > 180) d = 360 - d;
@@ -197,7 +188,6 @@ TEST(PatternRule, AnglesAreAboutTheBelly) {
       EXPECT_NEAR(found.strengths[c], expected, 1e-9) << c;
     }
   }
-  EXPECT_EQ(checked, 240);
 }
 
 TEST(PatternRule, TablesAreLinearBetweenTheirPoints) {
@@ -389,4 +379,3 @@ TEST(PatternRule, ScalesStiffnessAndPreloadOfACellsSprings) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,16 +1,10 @@
 // Apical and basal contraction: springs, programs and tensions.
 #include "mechanics/active/contraction.hpp"
 
-#include <gtest/gtest.h>
-
 #include "mechanics/active/program.hpp"
 #include "support/law_checks.hpp"
-#include "support/tissues.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const BlockShape refined{
     .length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}, .elements_per_cell = {2, 2, 1}};
@@ -339,4 +333,3 @@ TEST(Tension, OfLateralFacesIsThatOfThePerimeter) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,14 +1,9 @@
 #include "mechanics/constraints/cell_volume.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/constraint_law.hpp"
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const BlockShape refined{
     .length_um = 40, .width_um = 20, .cell_height_um = 40, .cells = {2, 1, 1}, .elements_per_cell = {2, 1, 1}};
@@ -137,4 +132,3 @@ TEST(Dilatation, ResistsOneElementGrowingAtAnothersCost) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,19 +1,12 @@
 #include "mechanics/constraints/enclosed_volume.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "measure/cells.hpp"
 #include "support/constraint_law.hpp"
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 TEST(HeldVolume, IsTheLumen) {
   const Tissue tissue = build_shell({200, 100, 20, {6, 4, 4}, {1, 1, 1}});
@@ -91,4 +84,3 @@ TEST(ElasticVolume, DerivativesAgreeWithFiniteDifferences) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,16 +1,11 @@
 #include "mechanics/constraints/ties.hpp"
 
-#include <gtest/gtest.h>
-
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 TEST(Ties, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = build_slice({14, 180, 35, {2, 4, 4}, {1, 1, 1}});
@@ -48,4 +43,3 @@ TEST(Ties, KeepASliceAsIfItWereEndless) {
 }
 
 }  // namespace
-}  // namespace plica

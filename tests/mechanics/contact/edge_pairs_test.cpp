@@ -1,24 +1,13 @@
 // Contact of edges, and the closest points of facets and edges.
 #include "mechanics/contact/edge_pairs.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-
 #include "measure/self_intersections.hpp"
 #include "mechanics/contact/closest_point.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
 #include "support/roofs.hpp"
-#include "support/tissues.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
-using support::Random;
 
 // The upper one, with the pairs of where it was at rest.
 Motion moved_down(const Tissue& tissue, const SelfContact& law, std::size_t upper, double by) {
@@ -177,19 +166,19 @@ TEST(EdgePairs, RidgesDoNotPassThroughEachOther) {
   }
 }
 
-using Segment = std::pair<Vec3, Vec3>;
+using Stretch = std::pair<Vec3, Vec3>;
 
-double distance_to(const Vec3& p, const Segment& segment) {
-  const Vec3 way = segment.second - segment.first;
+double distance_to(const Vec3& p, const Stretch& stretch) {
+  const Vec3 way = stretch.second - stretch.first;
   const double squared = way.squaredNorm();
-  const double part = squared > 0 ? std::clamp(way.dot(p - segment.first) / squared, 0.0, 1.0) : 0;
-  return (p - segment.first - part * way).norm();
+  const double part = squared > 0 ? std::clamp(way.dot(p - stretch.first) / squared, 0.0, 1.0) : 0;
+  return (p - stretch.first - part * way).norm();
 }
 
-Vec3 at(const Segment& segment, double part) { return segment.first + part * (segment.second - segment.first); }
+Vec3 at(const Stretch& stretch, double part) { return stretch.first + part * (stretch.second - stretch.first); }
 
 // The distance of a place on the first from the second is convex along it.
-double distance_by_search(const Segment& first, const Segment& second) {
+double distance_by_search(const Stretch& first, const Stretch& second) {
   double low = 0, high = 1;
   for (int k = 0; k < 200; ++k) {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
@@ -199,7 +188,7 @@ double distance_by_search(const Segment& first, const Segment& second) {
   return distance_to(at(first, (low + high) / 2), second);
 }
 
-double distance_of_ends(const Segment& first, const Segment& second) {
+double distance_of_ends(const Stretch& first, const Stretch& second) {
   return std::min({distance_to(first.first, second), distance_to(first.second, second),
                    distance_to(second.first, first), distance_to(second.second, first)});
 }
@@ -211,7 +200,7 @@ TEST(NearestInside, IsTheNearestOrAnEndIs) {
     int inside = 0;
     constexpr int cases = 2000;
     for (int k = 0; k < cases; ++k) {
-      Segment first{random.vector(), random.vector()}, second{random.vector(), random.vector()};
+      Stretch first{random.vector(), random.vector()}, second{random.vector(), random.vector()};
       const Vec3 way = first.second - first.first;
       if (kind == 1) second.second = second.first + random.number() * way;
       if (kind == 2) second = {at(first, random.number(2)), at(first, random.number(2))};
@@ -242,4 +231,3 @@ TEST(NearestInside, IsTheNearestOrAnEndIs) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,8 +1,4 @@
 // Friction between surfaces of one tissue: Coulomb's, by the pressure at the beginning of the step.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/coulomb.hpp"
 #include "mechanics/energy.hpp"
@@ -12,10 +8,7 @@
 #include "support/loads.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 constexpr double coefficient = 0.5;
 
@@ -169,4 +162,3 @@ TEST(Friction, ABlockSticksBelowTheCoefficientAndSlidesAboveIt) {
 }
 
 }  // namespace
-}  // namespace plica

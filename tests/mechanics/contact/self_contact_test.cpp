@@ -1,19 +1,11 @@
 #include "mechanics/contact/self_contact.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numeric>
-
 #include "support/bodies.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
 #include "support/prisms.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 // A strip of cells, bent into a U whose inner, apical sides face each other across `gap_um`.
 Tissue folded(double gap_um, int cells = 12) {
@@ -345,4 +337,3 @@ TEST(SelfContact, GapsHaveASign) {
 }
 
 }  // namespace
-}  // namespace plica

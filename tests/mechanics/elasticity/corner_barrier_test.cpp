@@ -1,20 +1,12 @@
 #include "mechanics/elasticity/corner_barrier.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "mechanics/elasticity/corotational.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
 #include "tissue/mesh_quality.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 // A threshold above all that these motions do, so that every corner is pushed; nothing is inside out yet.
 TEST(CornerBarrier, DerivativesAgreeWithFiniteDifferences) {
@@ -66,4 +58,3 @@ TEST(CornerBarrier, HoldsACornerUpright) {
 }
 
 }  // namespace
-}  // namespace plica

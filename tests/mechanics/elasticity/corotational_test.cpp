@@ -1,16 +1,11 @@
 #include "mechanics/elasticity/corotational.hpp"
 
-#include <gtest/gtest.h>
-
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 constexpr double young = 1.0;  // kPa: the paper's 1000 Pa
 constexpr double poisson = 0.3;
@@ -252,4 +247,3 @@ TEST(Corotational, RefusesAnInvertedRestShape) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,9 +1,5 @@
 #include "mechanics/elasticity/neo_hookean.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "core/threads.hpp"
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/elasticity/hexahedron_stiffness.hpp"
@@ -11,10 +7,7 @@
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const BlockShape one_cell{.length_um = 20, .width_um = 30, .cell_height_um = 40, .cells = {1, 1, 1}};
 
@@ -278,4 +271,3 @@ TEST(NeoHookean, DaughtersHaveTheirMothersFlow) {
 }
 
 }  // namespace
-}  // namespace plica

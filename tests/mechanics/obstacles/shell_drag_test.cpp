@@ -1,13 +1,8 @@
 #include "mechanics/obstacles/shell_drag.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/law_checks.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 // The apical face of a block, 100 um from the axis, and a shell this far from it.
 Tissue block() {
@@ -54,4 +49,3 @@ TEST(ShellDrag, SlowsWhatSlidesAlongTheShellAndTouchesIt) {
 }
 
 }  // namespace
-}  // namespace plica

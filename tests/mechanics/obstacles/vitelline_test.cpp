@@ -1,14 +1,8 @@
 #include "mechanics/obstacles/vitelline.hpp"
 
-#include <gtest/gtest.h>
-
 #include "support/tissues.hpp"
-#include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const Capsule pill{90, 140};
 const Capsule ball{0, 140};
@@ -96,4 +90,3 @@ TEST(EnclosingCapsule, IsTheOneThatABuiltEmbryoLiesOn) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,13 +1,8 @@
 // Conjugate gradients and conjugate residuals.
 #include "solver/algebra/krylov.hpp"
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
 constexpr int nodes = 12;
@@ -20,7 +15,7 @@ Eigen::Map<Vector> flat(KrylovVector& numbers) { return Eigen::Map<Vector>(numbe
 /// A random symmetric positive definite matrix and ways to use it.
 struct System {
   System() {
-    support::Random random(1);
+    Random random(1);
     for (int i = 0; i < matrix.size(); ++i) matrix.data()[i] = random.number();
     matrix = (matrix * matrix.transpose() + 0.1 * Matrix::Identity()).eval();
     for (int i = 0; i < 3 * nodes; ++i) b.push_back(random.number());
@@ -95,7 +90,7 @@ using Map = Eigen::Map<const Eigen::Matrix<double, size, 1>>;
 /// A random matrix without symmetry, its eigenvalues on both sides of zero.
 struct DenseSystem {
   DenseSystem() {
-    support::Random random(1);
+    Random random(1);
     for (int i = 0; i < matrix.size(); ++i) matrix.data()[i] = 0.1 * random.number();
     for (int i = 0; i < size; ++i) matrix(i, i) += i % 3 == 0 ? -1 : 1;
     for (int i = 0; i < size; ++i) b.push_back(random.number());
@@ -204,4 +199,3 @@ TEST(ConjugateResiduals, NothingToSolveIsSolved) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,14 +1,9 @@
 // Direct solver, factors of blocks, products of panels.
 #include "solver/algebra/linear_solver.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
-#include <limits>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "core/threads.hpp"
 #include "solver/algebra/block_cholesky.hpp"
@@ -16,10 +11,7 @@
 #include "support/cubes.hpp"
 #include "support/tissues.hpp"
 
-namespace plica {
 namespace {
-
-using support::Random;
 
 /// A random sparse quasi-definite matrix [A B^T; B -C], A and C positive definite, as pattern and values.
 struct System {
@@ -165,8 +157,8 @@ TEST(DirectSolver, TwoInTwoThreadsDoNotDisturbEachOther) {
 /// A box of nodes, each a neighbour of those of its cubes, with random blocks: symmetric, positive definite.
 struct BlockSystem {
   BlockSystem(int nx, int ny, int nz) {
-    pattern = pattern_of_groups(nx * ny * nz, support::cubes_of_box(nx, ny, nz), 8);
-    support::Random random(7);
+    pattern = pattern_of_groups(nx * ny * nz, cubes_of_box(nx, ny, nz), 8);
+    Random random(7);
     std::vector<Eigen::Triplet<double>> numbers;
     for (int row = 0; row < pattern.nodes(); ++row)
       for (int at = pattern.starts[row]; at < pattern.starts[row + 1]; ++at) {
@@ -197,7 +189,6 @@ struct BlockSystem {
 
 TEST(BlockCholesky, AgreesWithASolveInDoublePrecision) {
   const std::array<int, 3> sizes[] = {{2, 2, 2}, {9, 1, 1}, {4, 3, 2}, {12, 9, 2}, {7, 6, 8}, {20, 16, 2}, {60, 60, 2}};
-  int cases = 0;
   for (const auto& [nx, ny, nz] : sizes) {
     const BlockSystem system(nx, ny, nz);
     for (const Kernels kernels : available_kernels()) {
@@ -207,9 +198,7 @@ TEST(BlockCholesky, AgreesWithASolveInDoublePrecision) {
       cholesky.solve(x);
       EXPECT_LT(system.error(x), 2e-6) << nx << " x " << ny << " x " << nz << ", " << name(kernels);
     }
-    ++cases;
   }
-  EXPECT_EQ(cases, 7);
 }
 
 TEST(BlockCholesky, GivesTheSameBitsAgainAndAfterAnotherMatrix) {
@@ -305,7 +294,7 @@ TEST(BlockCholesky, PatternHasEachPairOfAGroupOnce) {
 // As a supernode keeps it: [lower triangle; any numbers], padded with zeros to whole chunks.
 struct Example {
   Example(int width, int rows) : dense(Eigen::MatrixXf::Zero(rows, width)), chunks(width * chunks_for(rows)) {
-    support::Random random(11);
+    Random random(11);
     for (int j = 0; j < width; ++j)
       for (int i = j; i < rows; ++i) {
         dense(i, j) = static_cast<float>(random.number());
@@ -324,7 +313,6 @@ struct Example {
 constexpr int shapes[][2] = {{3, 3}, {3, 40}, {6, 16}, {6, 17}, {9, 9}, {12, 100}, {15, 48}, {21, 31}, {33, 210}};
 
 TEST(PanelProducts, AreThoseOfTheDenseMatrixForAnyKernels) {
-  int cases = 0;
   for (const Kernels kernels : available_kernels())
     for (const auto& [width, rows] : shapes) {
       const Example example(width, rows);
@@ -344,10 +332,7 @@ TEST(PanelProducts, AreThoseOfTheDenseMatrixForAnyKernels) {
       Eigen::VectorXf back = Eigen::VectorXf::Constant(width, none);
       multiply_transposed(example.panel(), y.data(), back.data());
       EXPECT_LT((back - example.dense.transpose() * numbers.head(rows)).cwiseAbs().maxCoeff(), 1e-4F) << name(kernels);
-      ++cases;
     }
-  EXPECT_EQ(cases, 9 * available_kernels().size());
 }
 
 }  // namespace
-}  // namespace plica

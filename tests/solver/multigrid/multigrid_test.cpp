@@ -1,10 +1,4 @@
 // Multigrid, and the order of its nodes.
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numeric>
-
 #include "core/threads.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "solver/algebra/block_cholesky.hpp"
@@ -12,9 +6,7 @@
 #include "solver/multigrid/smoother.hpp"
 #include "support/cubes.hpp"
 #include "support/models.hpp"
-#include "support/tissues.hpp"
 
-namespace plica {
 namespace {
 
 using Doubles = Eigen::VectorXd;
@@ -72,7 +64,7 @@ class System final : public TangentSink {
   }
 
   [[nodiscard]] Doubles noise(unsigned seed) const {
-    support::Random random(seed);
+    Random random(seed);
     Doubles x(3 * pattern.nodes());
     for (int n = 0; n < pattern.nodes(); ++n) x.segment<3>(3 * n) = without(n) * random.vector();
     return x;
@@ -128,8 +120,8 @@ Model block(std::array<int, 3> cells, double poisson = 0.45) {
                            .cell_height_um = 40,
                            .cells = cells,
                            .elements_per_cell = {1, 1, 1}}));
-  support::add_elasticity(model, poisson);
-  support::add_drag(model);
+  add_elasticity(model, poisson);
+  add_drag(model);
   return model;
 }
 
@@ -137,8 +129,8 @@ Model block(std::array<int, 3> cells, double poisson = 0.45) {
 Model pill(int scale) {
   Model model(build_shell(
       {.length_um = 460.0 * scale, .diameter_um = 280.0 * scale, .cells = {18 * scale, 9 * scale, 8 * scale}}));
-  support::add_elasticity(model, 0.48);
-  support::add_drag(model);
+  add_elasticity(model, 0.48);
+  add_drag(model);
   model.obstacles.push_back(std::make_unique<Vitelline>(model.tissue, *model.tissue.outer_shape));
   return model;
 }
@@ -220,7 +212,7 @@ TEST(Multigrid, IterationsHardlyGrowWithASolid) {
 TEST(Multigrid, LeavesFixedDirectionsAlone) {
   const Model model = pill(2);
   System system(model);
-  support::Random random(9);
+  Random random(9);
   for (std::size_t n = 0; n < system.normals.size(); n += 2) system.normals[n] = random.vector().normalized();
   system.fix();
   const auto multigrid = make_multigrid(system.pattern);
@@ -332,7 +324,7 @@ TEST(Multigrid, RecoversFromAMatrixThatWasNone) {
 }
 
 BlockPattern box(int nx, int ny, int nz, const std::vector<int>& names) {
-  std::vector<int> groups = support::cubes_of_box(nx, ny, nz);
+  std::vector<int> groups = cubes_of_box(nx, ny, nz);
   for (int& node : groups) node = names[node];
   return pattern_of_groups(nx * ny * nz, groups, 8);
 }
@@ -340,7 +332,7 @@ BlockPattern box(int nx, int ny, int nz, const std::vector<int>& names) {
 std::vector<int> shuffled(int count) {
   std::vector<int> names(count);
   std::iota(names.begin(), names.end(), 0);
-  support::Random random(3);
+  Random random(3);
   for (int i = count; i-- > 1;) std::swap(names[i], names[static_cast<int>(0.5 * (random.number() + 1) * i)]);
   return names;
 }
@@ -385,7 +377,7 @@ TEST(MultigridOrder, PiecesAndLoneNodesHavePlacesToo) {
 // Sweeps that read a neighbour too early or too late would leave another residual than that of x.
 TEST(MultigridOrder, SweepsGroupByGroupLeaveTheResidualOfWhatTheyFound) {
   const BlockPattern pattern = box(60, 20, 10, shuffled(60 * 20 * 10));
-  support::Random random(5);
+  Random random(5);
   std::vector<float> values;
   for (int row = 0; row < pattern.nodes(); ++row)
     for (int at = pattern.starts[row]; at < pattern.starts[row + 1]; ++at)
@@ -417,4 +409,3 @@ TEST(MultigridOrder, SweepsGroupByGroupLeaveTheResidualOfWhatTheyFound) {
 }
 
 }  // namespace
-}  // namespace plica

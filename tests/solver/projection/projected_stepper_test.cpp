@@ -1,11 +1,6 @@
 // Linearly implicit steps, and those that project volumes afterwards.
 #include "solver/projection/projected_stepper.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-
 #include "core/threads.hpp"
 #include "solver/make_stepper.hpp"
 #include "solver/projection/linearly_implicit.hpp"
@@ -13,10 +8,7 @@
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 using Weights = ProjectionRule::Weights;
 using Forces = StepScheme::Forces;
@@ -122,10 +114,7 @@ TEST(ProjectedStepper, ByMobilityComesToTheCoupledSolve) {
     State start = expected;  // from nearby: where it rests does not depend on the way
     std::fill(start.velocities.begin(), start.velocities.end(), Vec3::Zero());
     const State rest = come_to_rest(*make_stepper(split, of), start, h, 12000);
-    double off = 0;
-    for (std::size_t n = 0; n < rest.positions.size(); ++n)
-      off = std::max(off, (rest.positions[n] - expected.positions[n]).norm());
-    return off;
+    return largest_distance(rest.positions, expected.positions);
   };
   for (const Forces forces : {Forces::newton, Forces::linearly_implicit}) {
     double previous = 0, previous_order = 0.4;
@@ -235,11 +224,7 @@ State steps(Stepper& stepper, State state, double duration_s, int count) {
   return state;
 }
 
-double distance(const State& a, const State& b) {
-  double most = 0;
-  for (std::size_t n = 0; n < a.positions.size(); ++n) most = std::max(most, (a.positions[n] - b.positions[n]).norm());
-  return most;
-}
+double distance(const State& a, const State& b) { return largest_distance(a.positions, b.positions); }
 
 /// A sheet without volumes or shell, some of it held; and where it is after a while of contraction.
 Model held_sheet() {
@@ -363,4 +348,3 @@ TEST(LinearlyImplicit, FailuresAreReportedAndLeaveTheStateAlone) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,23 +1,14 @@
 // Projection onto held volumes: closed surfaces, roots of cubics, moves of nodes.
 #include "solver/projection/volume_projection.hpp"
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
-#include <array>
-#include <cmath>
-#include <cstdio>
 
 #include "mechanics/constraints/cell_volume.hpp"
 #include "solver/projection/closed_surface.hpp"
 #include "solver/projection/cubic.hpp"
 #include "support/models.hpp"
-#include "support/tissues.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 constexpr double duration_s = 2;
 
@@ -148,7 +139,7 @@ TEST(VolumeProjection, ACellThatCannotMoveIsNamed) {
   ASSERT_TRUE(report.cell);
   EXPECT_EQ(report.cell->index(), 5u);
   EXPECT_EQ(report.projection_sweeps, 20);
-  EXPECT_NE(report.reason().find("cell 5"), std::string::npos) << report.reason();
+  EXPECT_SAYS(report.reason(), "cell 5");
 }
 
 // One volume around all: its cells may differ, their sum may not.
@@ -189,9 +180,7 @@ TEST(VolumeProjection, ShellAndVolumesAreMetTogetherFromAnyStart) {
     StepReport report;
     VolumeProjection(model, ProjectionRule{}).apply(before, duration_s, {}, warm, report);
     ASSERT_TRUE(report.converged()) << report.reason();
-    double apart = 0;
-    for (std::size_t n = 0; n < moved.size(); ++n)
-      apart = std::max(apart, (warm.positions[n] - cold.positions[n]).norm());
+    const double apart = largest_distance(warm.positions, cold.positions);
     for (const State* state : {&cold, &warm}) {
       EXPECT_LE(worst_error(model, state->positions), 1e-9);
       for (std::size_t k = 0; k < state->contact_forces.size(); ++k) {
@@ -387,7 +376,7 @@ TEST(Cubic, LowerDegreesAreSolvedToo) {
 
 // Against the eigenvalues of the companion matrix.
 TEST(Cubic, AgreesWithCompanionMatrix) {
-  support::Random random(1);
+  Random random(1);
   int three = 0, cases = 0;
   for (int k = 0; k < 2000; ++k) {
     const Cubic cubic{random.number(3), random.number(5), 0.01 + std::abs(random.number(4)), random.number(6)};
@@ -419,4 +408,3 @@ TEST(Cubic, AgreesWithCompanionMatrix) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,26 +1,16 @@
 // Differences in time of first and second order, and contacts that come and go within a step.
 #include "solver/step/backward_difference.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <vector>
-
 #include "solver/step/newton_stepper.hpp"
 #include "support/models.hpp"
 #include "tissue/division.hpp"
 
-namespace plica {
 namespace {
 
-using namespace support;
-
-using Motion = std::function<Vec3(double)>;
+using Way = std::function<Vec3(double)>;
 
 /// States of one node on its way at the ends of steps of these lengths.
-std::vector<State> states_of(const Motion& at, const std::vector<double>& steps_s, TimeOrder order) {
+std::vector<State> states_of(const Way& at, const std::vector<double>& steps_s, TimeOrder order) {
   State state;
   state.positions = {at(0)};
   state.velocities = {Vec3::Zero()};
@@ -84,7 +74,7 @@ TEST(BackwardDifference, LawsSeeTheVelocityAtTheEnd) {
 // constant (for first order the second).
 TEST(BackwardDifference, TheErrorOfAStepIsThatOfTheEquationItSolves) {
   const std::vector<double> steps_s = {0.3, 0.5, 0.4, 0.8};
-  const auto error_of_last = [&](const Motion& at, const Motion& rate, TimeOrder order) {
+  const auto error_of_last = [&](const Way& at, const Way& rate, TimeOrder order) {
     const auto states = states_of(at, steps_s, order);
     const State &before = states[states.size() - 2], &after = states.back();
     const BackwardDifference rates = order == TimeOrder::second
@@ -212,4 +202,3 @@ TEST(ContactCycle, Ends) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,21 +1,11 @@
 #include "solver/step/newton_stepper.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <limits>
-
 #include "core/threads.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 /// Several steps; every one has to converge.
 State steps(NewtonStepper& solver, State state, double duration_s, int count, State* before_last = nullptr) {
@@ -160,7 +150,6 @@ TEST(NewtonStepper, HeldNodesOnTheShellStayWhereTheyAre) {
   for (std::size_t c = 0; c < model.tissue.cells.size(); ++c)
     if (model.tissue.cells[c].grid_place->face == GridPlace::Face::anterior)
       for (int corner = 4; corner < 8; ++corner) held.push_back(model.tissue.cells[c].corners[corner].index());
-  int cases = 0;
   for (const std::array<bool, 3>& directions :
        {std::array<bool, 3>{true, true, true}, {true, false, false}, {false, true, true}}) {
     for (const std::size_t n : held) model.held[n] = directions;
@@ -175,9 +164,7 @@ TEST(NewtonStepper, HeldNodesOnTheShellStayWhereTheyAre) {
         if (directions[axis]) {
           EXPECT_NEAR(after.positions[n][axis], model.tissue.rest_positions[n][axis], 1e-12);
         }
-    ++cases;
   }
-  EXPECT_EQ(cases, 3);
 }
 
 TEST(NewtonStepper, OneAndTwoThreadsGiveTheSameBits) {
@@ -410,4 +397,3 @@ TEST(NewtonStepper, GoesOnlyAsFarAsItHelps) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,11 +1,4 @@
 // Snapshots and polygons in VTK's formats.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-#include <iostream>
-
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "record/mesh_writer.hpp"
@@ -14,28 +7,18 @@
 #include "support/tissues.hpp"
 #include "tissue/files/frame_file.hpp"
 #include "tissue/files/polygon_file.hpp"
-#include "tissue/hexahedral_mesh.hpp"
-#include "tissue/shapes/embryo.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 namespace fs = std::filesystem;
 
-class FrameFileTest : public support::OwnFolder {
+class FrameFileTest : public OwnFolder {
  protected:
   /// What reading complains of, without anything on stderr.
   template <class Error, class Read>
   static std::string error(const Read& read, const fs::path& file) {
     testing::internal::CaptureStderr();
-    std::string text;
-    try {
-      (void)read(file);
-    } catch (const Error& caught) {
-      text = caught.what();
-    }
+    const std::string text = error_of<Error>([&] { (void)read(file); });
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_TRUE(text.starts_with(file.string() + ": ")) << text;
     return text;
@@ -74,16 +57,14 @@ TEST_F(FrameFileTest, ReadsSurfacesInSeveralFormats) {
                          "POLYGONS 1 5\n4 0 1 2 3\n"),
       write(
           "a.stl",
-          "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 0 0\nvertex 4 4 0\nendloop\nendfacet\n"
-          "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 4 0\nvertex 0 4 0\nendloop\nendfacet\nendsolid s\n"),
+          "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 0 0\nvertex 4 4 0\nendloop\nendfacet\nfacet "
+          "normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 4 0\nvertex 0 4 0\nendloop\nendfacet\nendsolid s\n"),
       write("a.obj", "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nf 1 2 3 4\n"),
-      write(
-          "a.ply",
-          "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face "
-          "1\nproperty list uchar int vertex_indices\nend_header\n" +
-              off_plane + "4 0 1 2 3\n"),
+      write("a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement "
+            "face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+                off_plane + "4 0 1 2 3\n"),
   };
-  int cases = 0;
   for (const fs::path& file : files) {
     const TriangleSurface surface = read_surface(file);
     double area = 0;
@@ -91,13 +72,11 @@ TEST_F(FrameFileTest, ReadsSurfacesInSeveralFormats) {
       area += (surface.points[b] - surface.points[a]).cross(surface.points[c] - surface.points[a]).norm() / 2;
     EXPECT_EQ(surface.triangles.size(), 2U) << file;
     EXPECT_NEAR(area, 16, 1e-5) << file;
-    ++cases;
   }
   // Of a volume mesh, its boundary: 14 faces of three cells in a row.
   const Tissue block = build_block({60, 20, 40, {3, 1, 1}, {1, 1, 1}});
   write_mesh(folder / "block.vtu", block, block.rest_positions, {});
   EXPECT_EQ(read_surface(folder / "block.vtu").triangles.size(), 28U);
-  std::cout << cases + 1 << " files\n";
 }
 
 TEST_F(FrameFileTest, WhatCannotBeReadSaysWhy) {
@@ -110,26 +89,21 @@ TEST_F(FrameFileTest, WhatCannotBeReadSaysWhy) {
   write_mesh(folder / "whole.vtu", block, block.rest_positions, {});
   const std::string whole = read_file(folder / "whole.vtu");
   const fs::path torn = write("torn.vtu", whole.substr(0, whole.size() / 2));
-  int cases = 0;
   for (const fs::path& file : {missing, text, torn, folder}) {
     error<FileError>(read_frame, file);
     error<FileError>(read_surface, file);
-    cases += 2;
   }
   for (const fs::path& file : {folder / "missing.pvd", empty, cut, untimed}) {
     error<FileError>(read_collection, file);
-    ++cases;
   }
-  EXPECT_NE(error<FileError>(read_surface, points).find("no face"), std::string::npos);
-  const fs::path triangle =
-      write("triangle.vtk",
-            "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1 0 0 "
-            "0 1 0\nCELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n");
-  EXPECT_NE(error<MeshError>(read_frame, triangle).find("vtkTriangle"), std::string::npos);
-  std::cout << cases + 2 << " cases\n";
+  EXPECT_SAYS(error<FileError>(read_surface, points), "no face");
+  const fs::path triangle = write("triangle.vtk",
+                                  "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 "
+                                  "0 0 1 0 0 0 1 0\nCELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n5\n");
+  EXPECT_SAYS(error<MeshError>(read_frame, triangle), "vtkTriangle");
 }
 
-class PolygonFileVtk : public support::OwnFolder {
+class PolygonFileVtk : public OwnFolder {
  protected:
   PolygonFile read(const std::string& name, const std::string& text) { return read_polygon_file(write(name, text)); }
 };
@@ -152,19 +126,20 @@ TEST_F(PolygonFileVtk, LegacyPolydata) {
 
 TEST_F(PolygonFileVtk, LegacyGrid) {
   expect_two_faces(read("a.vtk", legacy + "DATASET UNSTRUCTURED_GRID\n" + points +
-                                     "CELLS 2 9\n3 0 1 4\n4 3 2 1 0\nCELL_TYPES 2\n5 7\n"
-                                     "CELL_DATA 2\nSCALARS height double\nLOOKUP_TABLE default\n7.5 8\n"));
+                                     "CELLS 2 9\n3 0 1 4\n4 3 2 1 0\nCELL_TYPES 2\n5 7\nCELL_DATA 2\nSCALARS height "
+                                     "double\nLOOKUP_TABLE default\n7.5 8\n"));
 }
 
 TEST_F(PolygonFileVtk, Vtp) {
-  expect_two_faces(read(
-      "a.vtp",
-      "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\" version=\"0.1\"><PolyData><Piece NumberOfPoints=\"5\" "
-      "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"2\"><Points><DataArray "
-      "type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0 0 1 0 .5 .5 2</DataArray></Points>"
-      "<CellData><DataArray type=\"Float64\" Name=\"height\" format=\"ascii\">7.5 8</DataArray></CellData><Polys>"
-      "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 4 3 2 1 0</DataArray><DataArray "
-      "type=\"Int64\" Name=\"offsets\" format=\"ascii\">3 7</DataArray></Polys></Piece></PolyData></VTKFile>"));
+  expect_two_faces(
+      read("a.vtp",
+           "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\" version=\"0.1\"><PolyData><Piece NumberOfPoints=\"5\" "
+           "NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"2\"><Points><DataArray "
+           "type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 1 1 0 0 1 0 .5 .5 "
+           "2</DataArray></Points><CellData><DataArray type=\"Float64\" Name=\"height\" format=\"ascii\">7.5 "
+           "8</DataArray></CellData><Polys><DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 4 3 2 "
+           "1 0</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">3 "
+           "7</DataArray></Polys></Piece></PolyData></VTKFile>"));
 }
 
 TEST_F(PolygonFileVtk, SaysWhatIsWrong) {
@@ -179,4 +154,3 @@ TEST_F(PolygonFileVtk, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,23 +1,16 @@
 // Files of polygons, of points and of labelled faces.
 #include "tissue/files/polygon_file.hpp"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <filesystem>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/mesh_error.hpp"
+#include "support/own_folder.hpp"
 #include "tissue/files/labelled_faces.hpp"
 #include "tissue/files/points_file.hpp"
 #include "tissue/files/vertex_model.hpp"
-#include "tissue/hexahedral_mesh.hpp"
 
-namespace plica {
 namespace {
 
 const std::string mark = "\xef\xbb\xbf";  // byte-order mark
@@ -44,14 +37,14 @@ TEST(PolygonFile, Off) {
 }
 
 const std::string ply_header =
-    "element vertex 5\nproperty float x\nproperty float y\nproperty uchar red\nproperty float z\nelement edge 1\n"
-    "property list uchar int two\nelement face 2\nproperty double height\nproperty list uchar int vertex_indices\n"
-    "end_header\n";
+    "element vertex 5\nproperty float x\nproperty float y\nproperty uchar red\nproperty float z\nelement edge "
+    "1\nproperty list uchar int two\nelement face 2\nproperty double height\nproperty list uchar int "
+    "vertex_indices\nend_header\n";
 
 TEST(PolygonFile, PlyAsText) {
-  const PolygonFile file = polygons_in_ply("ply\r\nformat ascii 1.0\ncomment by hand\n" + ply_header +
-                                           "0 0 9 0\n1 0 9 0\n1 1 9 0\n0 1 9 0\n.5 .5 9 2\n2 0 1\n"
-                                           "7.5 3 0 1 4\n8 4 3 2 1 0\n");
+  const PolygonFile file =
+      polygons_in_ply("ply\r\nformat ascii 1.0\ncomment by hand\n" + ply_header +
+                      "0 0 9 0\n1 0 9 0\n1 1 9 0\n0 1 9 0\n.5 .5 9 2\n2 0 1\n7.5 3 0 1 4\n8 4 3 2 1 0\n");
   expect_two_faces(file);
   EXPECT_EQ(file.arrays, (std::map<std::string, CellArray>{{"height", {7.5, 8}}}));
 }
@@ -201,29 +194,23 @@ TEST(VertexModel, SaysWhatIsWrong) {
   expect([](auto& t) { t.edges.columns["srce"][1] = 10; }, "the 3 edges of face 6 do not form one ring");
 }
 
-TEST(PolygonFile, IsReadByItsEnding) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / ("plica_polygons_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(folder);
+using TissueFiles = OwnFolder;
+
+TEST_F(TissueFiles, AreReadByTheirEnding) {
   write_file(folder / "a.OBJ", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   EXPECT_EQ(read_polygon_file(folder / "a.OBJ").surface.polygons.size(), 1U);
   write_file(folder / "a.stl", "solid\n");
   expect_mesh_error([&] { read_polygon_file(folder / "a.stl"); },
                     "a.stl: \".stl\" is not the extension of a polygon file");
   write_file(folder / "b.ply",
-             "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\nproperty int z\nelement face 2\n"
-             "property list int int vertex_indices\nproperty float a\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 nan\n"
-             "3 0 1 2 -inf\n");
+             "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\nproperty int z\nelement face "
+             "2\nproperty list int int vertex_indices\nproperty float a\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 "
+             "nan\n3 0 1 2 -inf\n");
   const PolygonFile missing = read_polygon_file(folder / "b.ply");
   for (const double value : missing.arrays.at("a")) EXPECT_TRUE(std::isnan(value));
   EXPECT_THROW(read_polygon_file(folder / "nowhere.ply"), FileError);
   write_file(folder / "a.h5", "no HDF5");
-  try {
-    read_polygon_file(folder / "a.h5");
-    ADD_FAILURE();
-  } catch (const FileError& error) {
-    EXPECT_NE(std::string(error.what()).find("HDF5"), std::string::npos) << error.what();
-  }
-  std::filesystem::remove_all(folder);
+  EXPECT_SAYS(error_of<FileError>([&] { return read_polygon_file(folder / "a.h5"); }), "HDF5");
 }
 
 TEST(PointsFile, HasItsColumnsByName) {
@@ -237,8 +224,8 @@ TEST(PointsFile, HasItsColumnsByName) {
 
 TEST(PointsFile, MissingValuesAndTextAreNoNumbers) {
   const PointTable table = points_in_csv(
-      "x_um,y_um,z_um,gene,kind,is_in\n1,2,3,,apical,True\n1,2,3,0.5,basal,false\n1,2,3,NaN,,true\n1,2,3,N/A,-,0\n"
-      "1,2,3,-inf,null,1\n");
+      "x_um,y_um,z_um,gene,kind,is_in\n1,2,3,,apical,True\n1,2,3,0.5,basal,false\n1,2,3,NaN,,true\n1,2,3,N/"
+      "A,-,0\n1,2,3,-inf,null,1\n");
   EXPECT_EQ(table.arrays.size(), 2U);
   EXPECT_EQ(table.arrays.at("is_in"), (std::vector<double>{1, 0, 1, 0, 1}));
   const std::vector<double>& gene = table.arrays.at("gene");
@@ -247,14 +234,7 @@ TEST(PointsFile, MissingValuesAndTextAreNoNumbers) {
 }
 
 TEST(PointsFile, SaysInWhichLineWhatIsWrong) {
-  const auto expect = [](const char* text, const char* said) {
-    try {
-      points_in_csv(text);
-      FAIL() << text;
-    } catch (const MeshError& error) {
-      EXPECT_NE(std::string(error.what()).find(said), std::string::npos) << error.what();
-    }
-  };
+  const auto expect = [](const char* text, const char* said) { expect_mesh_error([&] { points_in_csv(text); }, said); };
   expect("", "is empty; the first line must name the columns, including x_um, y_um and z_um");
   expect("x,y,z\n1,2,3\n", "line 1: must name the columns, including x_um, y_um and z_um once each; it names x, y, z");
   expect("x_um,y_um,z_um,z_um\n", "line 1: must name");
@@ -266,8 +246,8 @@ TEST(PointsFile, SaysInWhichLineWhatIsWrong) {
   EXPECT_THROW(read_points_file("/nowhere/points.csv"), FileError);
 }
 
-TEST(CellTable, HasAnArrayPerColumn) {
-  const std::string file = testing::TempDir() + "plica_cell_table_" + std::to_string(::getpid()) + ".csv";
+TEST_F(TissueFiles, OfCellsHaveAnArrayPerColumn) {
+  const std::string file = (folder / "cells.csv").string();
   write_file(file, "myosin, calcium\n1,2\n0.5,-1e-3\n");
   EXPECT_EQ(read_cell_table(file),
             (std::map<std::string, std::vector<double>>{{"calcium", {2, -1e-3}}, {"myosin", {1, 0.5}}}));
@@ -316,7 +296,7 @@ TEST(LabelledFaces, FacesOfALabelAreACellWhoseCornersAreWhereThreeMeet) {
   EXPECT_GT(area_vector(cells.surface.vertices, middle).z(), 0);
   EXPECT_EQ(cells.surface.polygons[0].size(), 4U);  // three within, one at the rim
   EXPECT_EQ(label_advice(cells), "");
-  EXPECT_NE(label_advice(file).find("its 72 faces are triangles with 7 values of \"label\""), std::string::npos);
+  EXPECT_SAYS(label_advice(file), "its 72 faces are triangles with 7 values of \"label\"");
 }
 
 TEST(LabelledFaces, WhatIsNoCellIsRefusedOrLeftOut) {
@@ -350,4 +330,3 @@ TEST(LabelledFaces, WhatIsNoCellIsRefusedOrLeftOut) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,18 +1,10 @@
 // Embryos of the paper's grid, blocks and slices.
 #include "tissue/shapes/embryo.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <map>
-#include <numbers>
-#include <set>
-
+#include "support/testing.hpp"
 #include "tissue/mesh_quality.hpp"
 #include "tissue/shapes/surface_grid.hpp"
 
-namespace plica {
 namespace {
 
 const ShellShape pill{};  // the defaults are the paper's Drosophila
@@ -151,7 +143,6 @@ TEST(Embryo, ThePapersPillStaysWhereItIs) {
 
 // In proportion and not: between the coarse grids that the large ones begin with, too.
 TEST(Embryo, LargeOnesAreAsEvenAsThePapers) {
-  int cases = 0;
   for (const ShellShape& shape :
        {scaled(2, {36, 18, 16}), scaled(3, {54, 27, 24}), scaled(5, {90, 45, 40}), scaled(8, {144, 72, 64}),
         scaled(5.1, {92, 46, 42}), scaled(2.25, {41, 20, 18}), scaled(5.5, {100, 50, 44}),
@@ -168,21 +159,16 @@ TEST(Embryo, LargeOnesAreAsEvenAsThePapers) {
     if (in_proportion) {
       EXPECT_GE(quality.min_scaled_jacobian, 0.856);
     }
-    ++cases;
   }
-  RecordProperty("cases", cases);
 }
 
 TEST(Embryo, GridsOutOfAllProportionDoNotFold) {
-  int cases = 0;
   for (const ShellShape& shape :
        {scaled(3, {60, 60, 4}), scaled(1, {40, 80, 10}), scaled(1, {5, 5, 200}), scaled(1, {100, 10, 10}),
         scaled(1, {31, 3, 40}), ShellShape{.length_um = 12000, .diameter_um = 120, .cells = {600, 4, 4}}}) {
     const Tissue tissue = build_shell(shape);
     EXPECT_GT(mesh_quality(tissue, tissue.rest_positions).min_scaled_jacobian, 0) << shape.cells[0];
-    ++cases;
   }
-  RecordProperty("cases", cases);
 }
 
 TEST(Embryo, NodesLieOnTheSurfacesOfTheirLayers) {
@@ -376,4 +362,3 @@ TEST(SurfaceGrid, FacesHaveTheirPlacesAndSides) {
 }
 
 }  // namespace
-}  // namespace plica

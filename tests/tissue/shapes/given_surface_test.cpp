@@ -1,14 +1,8 @@
 // Surfaces that others have made: what is mended, what is refused, and where.
 #include "tissue/shapes/given_surface.hpp"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "support/mesh_error.hpp"
 
-namespace plica {
 namespace {
 
 using Face = std::vector<std::size_t>;
@@ -107,7 +101,7 @@ TEST(GivenSurface, ShortEdgesAndWideAnglesAreMended) {
   surface.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, -0.025, 0}, {0, 0.025, 0}};
   surface.polygons = {{0, 1, 4}, {1, 2, 5, 4}, {2, 3, 5}, {3, 0, 4, 5}};
   const MendedSurface mended = check_and_mend(surface, true, {.least_edge = 0.3});
-  EXPECT_NE(all(mended).find("1 short edges and 0 wide angles"), std::string::npos);
+  EXPECT_SAYS(all(mended), "1 short edges and 0 wide angles");
   const double mean = (4 * 2 + 4 * std::sqrt(1 + 0.975 * 0.975) + 0.05) / 9;
   EXPECT_NEAR((surface.vertices[5] - surface.vertices[4]).norm(), 0.3 * mean, 0.02 * mean);
 
@@ -115,7 +109,7 @@ TEST(GivenSurface, ShortEdgesAndWideAnglesAreMended) {
   surface = squares(2, 2);
   surface.polygons = {{0, 1, 2, 5, 4, 3}, {3, 4, 7, 6}, {4, 5, 8, 7}};
   surface.vertices[1].y() = -0.5;
-  EXPECT_NE(all(check_and_mend(surface, true)).find("1 wide angles"), std::string::npos);
+  EXPECT_SAYS(all(check_and_mend(surface, true)), "1 wide angles");
   EXPECT_GT(surface.vertices[4].y(), 1.05);
 }
 
@@ -132,7 +126,7 @@ TEST(GivenSurface, VerticesAlongAWallAreDropped) {
   surface = squares(2, 1);
   surface.vertices.emplace_back(0.5, 0.1, 0);
   surface.polygons[0] = {0, 6, 1, 4, 3};
-  EXPECT_NE(all(check_and_mend(surface, true)).find("1 vertices along an edge or the rim"), std::string::npos);
+  EXPECT_SAYS(all(check_and_mend(surface, true)), "1 vertices along an edge or the rim");
   EXPECT_EQ(surface.polygons[0], (Face{0, 1, 4, 3}));
 }
 
@@ -246,4 +240,3 @@ TEST(GivenSurface, SaysWhatIsWrongAndWhere) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -3,14 +3,8 @@
 #include "tissue/shapes/polygon_embryo.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
-#include <numbers>
-#include <numeric>
 
 #include "support/mesh_error.hpp"
 #include "support/whole.hpp"
@@ -20,10 +14,7 @@
 #include "tissue/shapes/extrusion.hpp"
 #include "tissue/shapes/surface_polygons.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const EggShape small_egg{250, 120, 120, 11.0, 5.0};
 
@@ -77,7 +68,7 @@ TEST(PolygonEmbryo, SaysWhatItHadToMend) {
   const Tissue tissue = build_egg(small_egg, 200, 1, {45, PolygonSplit::diagonals, 1});
   std::string all;
   for (const std::string& remark : tissue.remarks) all += remark + '\n';
-  EXPECT_NE(all.find("cells are lower than 45 um"), std::string::npos) << all;
+  EXPECT_SAYS(all, "cells are lower than 45 um");
 }
 
 // About points of an egg that lie below its surface and have shrunk.
@@ -188,7 +179,7 @@ TEST_P(PolygonEmbryo, UnderAFootballElsewhereGoesAlongMeanNormals) {
   for (std::size_t v = 0; v < 60; ++v) basal[v] = football.vertices[v] + height * basal[v].normalized();
   for (Vec3& vertex : football.vertices) vertex += Vec3(100, 50, 0);
   const SurfaceTissue made = build_under_surface({.surface = football}, {height, GetParam(), 1});
-  EXPECT_NE(made.why_no_shape.find("points must surround the origin"), std::string::npos) << made.why_no_shape;
+  EXPECT_SAYS(made.why_no_shape, "points must surround the origin");
   EXPECT_NEAR(volume_of(made.tissue) / (8 * football_volume - volume_within(basal, football.polygons)), 1, 1e-9);
 }
 
@@ -198,7 +189,7 @@ TEST(SurfaceEmbryo, TakesAHeightACellAndMovesToTheMiddle) {
   std::vector<double> heights(32, 1.0);
   heights[3] = 1.3;
   const SurfaceTissue off = build_under_surface({.surface = football, .heights_um = heights}, {});
-  EXPECT_NE(off.why_no_shape.find("points must surround the origin"), std::string::npos) << off.why_no_shape;
+  EXPECT_SAYS(off.why_no_shape, "points must surround the origin");
   EXPECT_FALSE(off.tissue.outer_shape);
   const SurfaceTissue centred =
       build_under_surface({.surface = football, .heights_um = heights, .placement = {.centre = true}}, {});
@@ -316,4 +307,3 @@ TEST_F(MeasuredEmbryo, LivesAsAnEggOfTheKnownSize) {
 }
 
 }  // namespace
-}  // namespace plica

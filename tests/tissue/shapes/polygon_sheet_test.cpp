@@ -1,15 +1,6 @@
 // Sheets of polygons: rectangles, periods, extrusion.
 #include "tissue/shapes/polygon_sheet.hpp"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
-#include <numeric>
-#include <span>
-
 #include "support/mesh_error.hpp"
 #include "support/whole.hpp"
 #include "tissue/division.hpp"
@@ -20,10 +11,7 @@
 #include "tissue/shapes/rectangle_polygons.hpp"
 #include "tissue/shapes/surface_polygons.hpp"
 
-namespace plica {
 namespace {
-
-using namespace support;
 
 const PolygonCells cells{12, PolygonSplit::diagonals, 1};
 
@@ -84,7 +72,7 @@ TEST(PolygonSheet, BendsToACylinderADomeAndASaddle) {
 TEST(PolygonSheet, IsLowerWhereItBendsSharply) {
   const Tissue tissue = build_sheet({100, 30, {0, 0.1}}, 300, 1, cells);
   ASSERT_FALSE(tissue.remarks.empty());
-  EXPECT_NE(tissue.remarks.back().find("cells are lower than 12 um"), std::string::npos) << tissue.remarks.back();
+  EXPECT_SAYS(tissue.remarks.back(), "cells are lower than 12 um");
 }
 
 TEST(PolygonSheet, SaysWhatIsWrong) {
@@ -194,7 +182,6 @@ TEST(RectanglePolygons, OfTwoPointsAreHalves) {
 
 // Three edges meet at each vertex. On a torus V - E + F = 0 then says E = 3 F: six neighbours on average.
 TEST(RectanglePolygons, OfTwoPeriodsHaveSixNeighboursOnAverage) {
-  int cases = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5})
     for (const std::size_t count : {24, 60, 200}) {
       const Rectangle rectangle{{90, 70}, {true, true}};
@@ -209,9 +196,7 @@ TEST(RectanglePolygons, OfTwoPeriodsHaveSixNeighboursOnAverage) {
         own += surface.periods.original(v) == v;
       }
       EXPECT_EQ(own, 2 * count);
-      ++cases;
     }
-  std::printf("%d patterns\n", cases);
 }
 
 TEST(RectanglePolygons, OfOnePeriodHaveARimOnTheOtherSides) {
@@ -329,4 +314,3 @@ TEST(PrismSheet, RefusesHeightsThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace plica

@@ -1,19 +1,10 @@
 // Surfaces of solid harmonics around an origin, and fits of them.
 #include "tissue/shapes/star_surface.hpp"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <random>
-
 #include "support/mesh_error.hpp"
 #include "tissue/shapes/egg_surface.hpp"
 #include "tissue/shapes/solid_harmonics.hpp"
 
-namespace plica {
 namespace {
 
 StarSurface ellipsoid(double a, double b, double c) { return {Mat3::Identity(), Vec3(a, b, c), {1.0}}; }
@@ -78,7 +69,6 @@ TEST(StarSurface, ClosestPlacesAgreeWithASearch) {
 TEST(StarSurface, ClosestPlacesOfDeepPointsAreTheNearestOfSeveral) {
   const Vectors net = even_directions(4000);
   const StarSurface egg = egg_surface({500, 200, 150, 14, 7});
-  int cases = 0;
   for (double x = -200; x <= 200; x += 25)
     for (const double z : {-12.0, -4.0, 4.0, 12.0}) {
       const Vec3 point(x + 1, 0.5, z);
@@ -87,9 +77,7 @@ TEST(StarSurface, ClosestPlacesOfDeepPointsAreTheNearestOfSeveral) {
       EXPECT_LT(-closest.signed_distance_um, searched_distance(egg, point, net) + 1e-6) << point.transpose();
       EXPECT_NEAR((closest.point - point).norm(), -closest.signed_distance_um, 1e-9);
       EXPECT_LT((egg.along_ray(closest.point) - closest.point).norm(), 1e-9);
-      ++cases;
     }
-  EXPECT_EQ(cases, 17 * 4);
 }
 
 TEST(StarSurface, PutOnEndsNextToTheClosestPlace) {
@@ -267,7 +255,6 @@ TEST(SolidHarmonics, AreOrthogonalWithMeanSquareOne) {
 // Along the sphere, where the harmonics are evaluated: a derivative's tangential part is that of the values.
 TEST(SolidHarmonics, DerivativesAgreeWithDifferences) {
   constexpr int degree = 7;
-  int cases = 0;
   for (std::size_t i = 0; i < harmonic_count(degree); ++i) {
     std::vector<double> coefficients(harmonic_count(degree), 0.0);
     coefficients[i] = harmonic_norms(degree)[i];
@@ -282,15 +269,12 @@ TEST(SolidHarmonics, DerivativesAgreeWithDifferences) {
                               value(coefficients, degree, (d - h * t).normalized())) /
                              (2 * h);
         EXPECT_NEAR(gradient.dot(t), slope, 1e-6) << "harmonic " << i;
-        ++cases;
       }
       // A solid harmonic is homogeneous: x . grad R_l = l R_l.
       const int l = static_cast<int>(std::sqrt(static_cast<double>(i)));
       EXPECT_NEAR(gradient.dot(d), l * value(coefficients, degree, d), 1e-9) << "harmonic " << i;
     }
   }
-  EXPECT_EQ(cases, 64 * 7 * 3);
 }
 
 }  // namespace
-}  // namespace plica

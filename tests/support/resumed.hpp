@@ -1,0 +1,35 @@
+// Simulations that go on from a moment of another, and whether they are where that one is, to the bit.
+#pragma once
+
+#include "record/archive.hpp"
+#include "record/checkpoint.hpp"
+#include "simulation/simulation.hpp"
+#include "support/tissues.hpp"
+
+namespace plica::support {
+
+inline void expect_same(const State& a, const State& b) {
+  EXPECT_EQ(a.time_s, b.time_s);
+  EXPECT_EQ(a.positions, b.positions);
+  EXPECT_EQ(a.velocities, b.velocities);
+  EXPECT_EQ(a.multipliers, b.multipliers);
+  EXPECT_EQ(a.contact_forces, b.contact_forces);
+  EXPECT_EQ(a.in_contact, b.in_contact);
+  EXPECT_EQ(a.divided_until_s, b.divided_until_s);
+  EXPECT_EQ(a.trend.step_s, b.trend.step_s);
+  EXPECT_EQ(a.trend.earlier_s, b.trend.earlier_s);
+  EXPECT_EQ(a.trend.mean_velocities, b.trend.mean_velocities);
+  EXPECT_EQ(a.trend.accelerations, b.trend.accelerations);
+  EXPECT_EQ(a.trend.multiplier_rates, b.trend.multiplier_rates);
+  EXPECT_EQ(a.internals, b.internals);
+}
+
+/// A fresh simulation goes on from a moment: by the bytes of a checkpoint, where this plica has them.
+inline void go_on_by_bytes(Simulation& fresh, const RunMemory& memory, const Observation& measures) {
+  Checkpoint checkpoint{"", "", "", memory, {}};
+  checkpoint.record.rows.push_back(measures);
+  if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
+  fresh.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+}
+
+}  // namespace plica::support
