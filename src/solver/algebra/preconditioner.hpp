@@ -4,7 +4,7 @@
 #include <memory>
 #include <span>
 
-#include "solver/algebra/block_pattern.hpp"
+#include "solver/algebra/rows.hpp"
 
 namespace plica {
 

@@ -2,7 +2,7 @@
 // carry it.
 //
 // Rows of functions of few nodes are sparse; those of functions of thousands are stored as full vectors, outside any
-// matrix (dense_border.hpp).
+// matrix (border.hpp).
 #pragma once
 
 #include <span>

@@ -6,9 +6,8 @@
 #include "core/parallel.hpp"
 #include "solver/algebra/block_cholesky.hpp"
 #include "solver/algebra/preconditioner.hpp"
-#include "solver/multigrid/galerkin.hpp"
-#include "solver/multigrid/order.hpp"
 #include "solver/multigrid/smoother.hpp"
+#include "solver/multigrid/transfer.hpp"
 
 namespace plica {
 namespace multigrid {

@@ -4,7 +4,7 @@
 #include "core/parallel.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "solver/algebra/block_cholesky.hpp"
-#include "solver/linear/contact_border.hpp"
+#include "solver/linear/border.hpp"
 #include "solver/linear/directions.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/models.hpp"

@@ -10,7 +10,6 @@
 
 #include "mechanics/constraints/cell_volume.hpp"
 #include "solver/projection/closed_surface.hpp"
-#include "solver/projection/cubic.hpp"
 #include "support/models.hpp"
 #include "support/tissues.hpp"
 
