@@ -67,21 +67,18 @@ NeoHookean::NeoHookean(const Tissue& tissue, const std::vector<double>& shear_mo
     : NeoHookean(tissue, materials_of(tissue, shear_moduli, relaxation_s), kernels) {}
 
 NeoHookean::NeoHookean(const Tissue& tissue, std::vector<NeoHookeanMaterial> materials, Kernels kernels)
-    : materials_(tissue, materials),
+    : BatchLaw(tissue.elements, {tissue, tissue.elements}, kernels),
+      materials_(tissue, materials),
       flows_(std::ranges::any_of(materials, [](const NeoHookeanMaterial& one) { return one.relaxation_s > 0; })),
-      kernels_(kernels),
-      elements_(tissue.elements),
       element_cell_(tissue.element_cell),
       rest_(tissue.element_rest_shape),
-      chunks_(tissue, tissue.elements),
       batches_(chunks_.batch_count()),
       flow_batches_(flows() ? chunks_.batch_count() : 0) {
   require_upright_rest_shapes(tissue);
-  parallel_for(batches_.size() * batch_size, [&](std::size_t place) { fit(tissue, place); });
+  parallel_for(places(), [&](std::size_t place) { fit(tissue, place); });
 }
 
 void NeoHookean::fit(const Tissue& tissue, std::size_t place) {
-  // Places after the last element repeat it: kernels calculate there too.
   const std::size_t e = std::min(place, elements_.size() - 1), lane = place % batch_size;
   if (place == e) rest_[e] = tissue.element_rest_shape[e];
   NeoHookeanBatch& batch = batches_[place / batch_size];
@@ -95,16 +92,6 @@ void NeoHookean::fit(const Tissue& tissue, std::size_t place) {
     for (int k = 0; k < 9; ++k) flow_batches_[place / batch_size].frames[g][k][lane] = D0.data()[k];
   }
   if (flows()) flow_batches_[place / batch_size].rates[lane] = relaxation_s > 0 ? 1 / relaxation_s : 0;
-}
-
-std::unique_ptr<Law> NeoHookean::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
-  auto law = std::make_unique<NeoHookean>(*this);
-  for (const ElementId e : elements) law->fit(tissue, e.index());
-  return law;
-}
-
-const NeoHookeanKernels& NeoHookean::kernels() const {
-  return kernels_for(kernels_, generic::neo_hookean_kernels, avx2::neo_hookean_kernels, avx512::neo_hookean_kernels);
 }
 
 NeoHookeanStep NeoHookean::kernel_step(const Step& step) const {
@@ -163,46 +150,6 @@ EnergyFlow NeoHookean::energy_flow(const MadeStep& made) const {
     flow.dissipated -= 0.5 * mean[n].dot(made.end.positions[n] - made.begin.positions[n]);
   flow.dissipated -= flow.stored;
   return flow;
-}
-
-void NeoHookean::add_forces(const Step& step, std::span<Vec3> forces) const {
-  const NeoHookeanStep at = kernel_step(step);
-  chunks_.for_batches(
-      [&](std::size_t first, std::size_t last) { kernels().add_forces(at, first, last, numbers(forces)); });
-}
-
-void NeoHookean::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
-  const NeoHookeanStep at = kernel_step(step);
-  chunks_.for_batches([&](std::size_t first, std::size_t last) {
-    kernels().add_product(at, first, last, numbers(direction), numbers(product));
-  });
-}
-
-void NeoHookean::add_tangent(const Step& step, TangentSink& tangent) const {
-  const NeoHookeanStep at = kernel_step(step);
-  const auto add_batch = [&](std::size_t batch) {
-    HexahedronBlocks of_batch;
-    kernels().write_blocks(at, batch, of_batch);
-    const std::size_t first = batch * batch_size;
-    for (std::size_t e = first; e < std::min(first + batch_size, elements_.size()); ++e)
-      for (int i = 0, pair = 0; i < 8; ++i)
-        for (int j = 0; j <= i; ++j, ++pair) {
-          Mat3 block;
-          for (int k = 0; k < 9; ++k) block.data()[k] = of_batch.blocks[pair][k][e - first];
-          tangent.add_block(elements_[e][i], elements_[e][j], block);
-        }
-  };
-  chunks_.for_batches(
-      [&](std::size_t first, std::size_t last) {
-        for (std::size_t batch = first; batch < last; ++batch) add_batch(batch);
-      },
-      tangent.takes_apart());
-}
-
-NodeGroups NeoHookean::node_groups(std::span<const double> /*internal*/) const {
-  NodeGroups groups;
-  for (const auto& nodes : elements_) groups.add(nodes);
-  return groups;
 }
 
 std::vector<double> NeoHookean::first_internal(const Tissue& /*tissue*/) const {

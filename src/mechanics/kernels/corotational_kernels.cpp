@@ -169,6 +169,6 @@ void add_product(const CorotationalStep& step, std::size_t first, std::size_t la
 
 }  // namespace
 
-const CorotationalKernels corotational_kernels = {write_energies, add_forces, add_product, write_blocks};
+const CorotationalKernels corotational_kernels = {{add_forces, add_product, write_blocks}, write_energies};
 
 }  // namespace plica::PLICA_KERNELS

@@ -1,9 +1,8 @@
 // Letters as in docs/theory/neo_hookean.md. At a Gauss point D = dx/d(reference), K = cof D and J = det D; B is the
 // inverse of the metric of the rest shape, flowed or not, in reference coordinates: tr(C C_p^-1) = tr(D B D^T). The
 // energy's gradient by D is w (D B - K/J). A letter with a d: its change along a direction.
-#include "mechanics/kernels/neo_hookean_kernels.hpp"
-
 #include "mechanics/kernels/hexahedron_lanes.hpp"
+#include "mechanics/kernels/tables.hpp"
 
 namespace plica::PLICA_KERNELS {
 namespace {
@@ -266,6 +265,6 @@ void write_blocks(const NeoHookeanStep& step, std::size_t batch, HexahedronBlock
 
 }  // namespace
 
-const NeoHookeanKernels neo_hookean_kernels = {add_forces, add_product, write_blocks, write_flowed};
+const NeoHookeanKernels neo_hookean_kernels = {{add_forces, add_product, write_blocks}, write_flowed};
 
 }  // namespace plica::PLICA_KERNELS

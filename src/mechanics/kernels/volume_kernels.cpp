@@ -1,8 +1,7 @@
 // Letters as in docs/theory/cell_volume.md: V the volume as a cubic polynomial of the modes m_j, g its gradient by
 // them.
-#include "mechanics/kernels/volume_kernels.hpp"
-
 #include "mechanics/kernels/hexahedron_lanes.hpp"
+#include "mechanics/kernels/tables.hpp"
 
 namespace plica::PLICA_KERNELS {
 namespace {
@@ -106,6 +105,6 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
 
 }  // namespace
 
-const VolumeKernels volume_kernels = {add_volumes, write_gradients, add_forces, add_product};
+const VolumeKernels volume_kernels = {{add_forces, add_product, nullptr}, add_volumes, write_gradients};
 
 }  // namespace plica::PLICA_KERNELS
