@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "core/box_grid.hpp"
-#include "mechanics/contact/closest_point.hpp"
 
 namespace plica {
 namespace {
@@ -112,8 +111,8 @@ class Search {
     if (of_a.area == 0 && of_b.area == 0) return std::nullopt;  // images: a pair of the side's stands for them
     const std::optional<PlacesOnSegments> places = nearest_inside(a.from, a.to, b.from, b.to);
     if (!places) return std::nullopt;
-    ContactPair pair{a.segment, static_cast<int>(b.segment), of_a.at(places->on_first), of_b.at(places->on_second),
-                     (a.to - a.from).cross(b.to - b.from).normalized()};
+    ContactPair pair{static_cast<double>(a.segment), static_cast<double>(b.segment), of_a.at(places->on_first),
+                     of_b.at(places->on_second), (a.to - a.from).cross(b.to - b.from).normalized()};
     if (pair.apart(positions_).squaredNorm() >= reach() * reach() || are_neighbours(of_a, of_b)) return std::nullopt;
     const ContactPair* last = last_of(pair);
     if (!turn(pair, last, b.outward - a.outward)) return std::nullopt;
@@ -159,8 +158,8 @@ class Search {
 }  // namespace
 
 SurfacePlace Segment::at(double part) const {
-  if (count == 2) return {nodes, {1 - part, part}, 2};
-  return {nodes, {1 - 0.75 * part, 0.25 * part, 0.25 * part, 0.25 * part}, 4};
+  if (count == 2) return {nodes, 2, {1 - part, part}};
+  return {nodes, 4, {1 - 0.75 * part, 0.25 * part, 0.25 * part, 0.25 * part}};
 }
 
 EdgePairs::EdgePairs(std::span<const std::array<NodeId, 4>> facets, std::span<const double> areas,
