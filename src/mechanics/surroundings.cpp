@@ -16,12 +16,6 @@ std::vector<double> drag_coefficients(const Tissue& tissue, double drag) {
   return coefficients;
 }
 
-double norm(std::span<const double> numbers) {
-  double sum = 0;
-  for (const double number : numbers) sum += number * number;
-  return std::sqrt(sum);
-}
-
 std::vector<double> lumped_masses(const Tissue& tissue, double density) {
   std::vector<double> masses(tissue.node_count(), 0.0);
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
@@ -36,16 +30,8 @@ SurfaceDrag::SurfaceDrag(const Tissue& tissue, double drag) : drag_(drag) {
   coefficients_ = drag_coefficients(tissue, drag);
 }
 
-double SurfaceDrag::rounding(const Step& step, double position_rounding) const {
-  return norm(coefficients_) / step.rate_s * position_rounding;
-}
-
 Inertia::Inertia(const Tissue& tissue, double density) : density_(density) {
   coefficients_ = lumped_masses(tissue, density);
-}
-
-double Inertia::rounding(const Step& step, double position_rounding) const {
-  return norm(coefficients_) / (step.rate_s * step.rate_s) * position_rounding;
 }
 
 FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellPattern pattern, double pressure, Program program)
@@ -71,29 +57,6 @@ FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellPattern pat
         for (int i = 0; i < 4; ++i) loads_[facet.nodes[i].index()] += shape[i] * push;
       }
   }
-}
-
-double FacePressure::energy(const Step& step) const {
-  double work = 0;
-  for (std::size_t n = 0; n < loads_.size(); ++n) work += loads_[n].dot(step.positions[n]);
-  return -program_.at(step.end_time_s) * work;
-}
-
-EnergyFlow FacePressure::energy_flow(const MadeStep& made) const {
-  double work = 0;
-  for (std::size_t n = 0; n < loads_.size(); ++n)
-    work += loads_[n].dot(made.whole.positions[n] - made.whole.previous_positions[n]);
-  return {.active = program_.at(made.whole.end_time_s) * work};
-}
-
-void FacePressure::add_forces(const Step& step, std::span<Vec3> forces) const {
-  const double activity = program_.at(step.end_time_s);
-  for (std::size_t n = 0; n < loads_.size(); ++n) forces[n] += activity * loads_[n];
-}
-
-std::unique_ptr<Law> FacePressure::after_division(const Tissue& tissue, const Division& division,
-                                                  std::span<const Vec3>) const {
-  return std::make_unique<FacePressure>(tissue, on_apical_, pattern_.after_division(division), pressure_, program_);
 }
 
 }  // namespace plica

@@ -1,6 +1,8 @@
 // Laws on single nodes: drag, inertia, and pressure on faces (dead load).
 #pragma once
 
+#include <cmath>
+
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/energy.hpp"
@@ -45,6 +47,12 @@ class NodeLaw : public Law {
     return step.positions[node] - step.before([node](std::span<const Vec3> x) { return x[node]; });
   }
 
+  [[nodiscard]] double norm() const {
+    double sum = 0;
+    for (const double coefficient : coefficients_) sum += coefficient * coefficient;
+    return std::sqrt(sum);
+  }
+
   std::vector<double> coefficients_;  // nodes
 
  private:
@@ -66,7 +74,9 @@ class SurfaceDrag final : public NodeLaw<SurfaceDrag> {
   SurfaceDrag(const Tissue& tissue, double drag);
 
   [[nodiscard]] std::string_view name() const override { return "drag"; }
-  [[nodiscard]] double rounding(const Step& step, double position_rounding) const override;
+  [[nodiscard]] double rounding(const Step& step, double position_rounding) const override {
+    return norm() / step.rate_s * position_rounding;
+  }
 
  private:
   friend NodeLaw;
@@ -87,7 +97,9 @@ class Inertia final : public NodeLaw<Inertia> {
   Inertia(const Tissue& tissue, double density);
 
   [[nodiscard]] std::string_view name() const override { return "inertia"; }
-  [[nodiscard]] double rounding(const Step& step, double position_rounding) const override;
+  [[nodiscard]] double rounding(const Step& step, double position_rounding) const override {
+    return norm() / (step.rate_s * step.rate_s) * position_rounding;
+  }
   [[nodiscard]] std::span<const double> masses() const override { return coefficients_; }
 
  private:
@@ -113,16 +125,30 @@ class FacePressure final : public Law {
 
   [[nodiscard]] std::string_view name() const override { return "pressure"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<FacePressure>(*this); }
-  [[nodiscard]] double energy(const Step& step) const override;
-  [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override;
-  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  [[nodiscard]] double energy(const Step& step) const override {
+    double work = 0;
+    for (std::size_t n = 0; n < loads_.size(); ++n) work += loads_[n].dot(step.positions[n]);
+    return -program_.at(step.end_time_s) * work;
+  }
+  [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override {
+    double work = 0;
+    for (std::size_t n = 0; n < loads_.size(); ++n)
+      work += loads_[n].dot(made.whole.positions[n] - made.whole.previous_positions[n]);
+    return {.active = program_.at(made.whole.end_time_s) * work};
+  }
+  void add_forces(const Step& step, std::span<Vec3> forces) const override {
+    const double activity = program_.at(step.end_time_s);
+    for (std::size_t n = 0; n < loads_.size(); ++n) forces[n] += activity * loads_[n];
+  }
   void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}  // constant force
   void add_tangent(const Step&, TangentSink&) const override {}
-  [[nodiscard]] const CellPattern& pattern() const { return pattern_; }
+  [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
   [[nodiscard]] std::vector<double> program_points_s() const override { return program_.times_s(); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.jumps_s(); }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
-                                                    std::span<const Vec3> positions) const override;
+                                                    std::span<const Vec3> /*positions*/) const override {
+    return std::make_unique<FacePressure>(tissue, on_apical_, pattern_.after_division(division), pressure_, program_);
+  }
 
  private:
   bool on_apical_;

@@ -8,7 +8,7 @@
 
 #include "core/errors.hpp"
 #include "measure/cells.hpp"
-#include "mechanics/active/given_activities.hpp"
+#include "mechanics/active/cell_pattern.hpp"
 #include "record/checkpoint.hpp"
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"

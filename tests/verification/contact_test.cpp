@@ -17,7 +17,7 @@
 #include <sstream>
 
 #include "measure/self_intersections.hpp"
-#include "mechanics/contact/contact_pair.hpp"
+#include "mechanics/contact/edge_pairs.hpp"
 #include "mechanics/contact/self_contact.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/bodies.hpp"

@@ -243,11 +243,6 @@ std::vector<double> Cortex::next_internal(const Step& step) const {
   return joined(std::move(internal), given(step.internal).numbers());
 }
 
-std::vector<double> Cortex::with_activities(std::span<const double> internal,
-                                            std::span<const double> activities) const {
-  return GivenActivities::put(internal, own_numbers(), activities);
-}
-
 // A face comes from the one with its nodes, else from all between its cells. A face between daughters comes from none.
 class Cortex::Origins {
  public:

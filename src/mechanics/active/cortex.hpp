@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "mechanics/active/cell_pattern.hpp"
-#include "mechanics/active/given_activities.hpp"
 #include "mechanics/active/own_state.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/kernels/batch_law.hpp"
@@ -61,10 +60,12 @@ class Cortex final : public BatchLaw<Cortex, 4> {
                                                   std::span<const double> internal) const override;
   /// Override the activity of the tension; stiffness keeps its program.
   [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
-                                                    std::span<const double> activities) const override;
+                                                    std::span<const double> activities) const override {
+    return GivenActivities::put(internal, own_numbers(), activities);
+  }
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
-  [[nodiscard]] const CellPattern& pattern() const { return pattern_; }
+  [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
   /// Areas (um^2) and tensions (nN/um) of the faces at the end of a step.
   [[nodiscard]] std::vector<double> areas(std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<double> tensions(const Step& step) const;

@@ -48,7 +48,6 @@ class CellVolumes final : public Constraint {
                    TangentSink& tangent) const override;
   [[nodiscard]] double gradient_scale(std::size_t cell) const override;
   [[nodiscard]] double rounding(const Tissue& tissue, double position_rounding) const override;
-  [[nodiscard]] std::optional<CellId> cell_of(std::size_t cell) const override { return CellId(cell); }
   /// Return the constraints of the tissue after growth.
   [[nodiscard]] CellVolumes grown(const Tissue& tissue) const;
   /// Return the constraints after a division; daughters inherit pressures.

@@ -1,10 +1,9 @@
 // Contact pair: two places of a surface that are kept apart, a point and a facet or two crossing edges
-// (docs/theory/self_contact.md). Energy, force, tangent and friction are the same for both kinds. Closest points.
+// (docs/theory/self_contact.md). Energy, force, tangent and friction are the same for both kinds.
 #pragma once
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -79,22 +78,5 @@ struct ContactPair {
 /// Number of values of a pair in an internal state, where pairs follow one another.
 constexpr std::size_t numbers_of_pair = 24;
 static_assert(sizeof(ContactPair) == numbers_of_pair * sizeof(double));
-
-struct ClosestPoint {
-  std::array<double, 3> weights;  // barycentric; sum to 1
-  double squared_distance;        // um^2
-};
-
-/// Return the point of triangle a, b, c nearest to p; the triangle may be degenerate.
-ClosestPoint closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
-
-/// Fractions of the two segments, from first to second end.
-struct PlacesOnSegments {
-  double on_first, on_second;
-};
-
-/// Return the closest points of segments a b and c d if both are interior; empty if an end is as near, or the segments
-/// are parallel (within 0.001) or have no length.
-std::optional<PlacesOnSegments> nearest_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
 }  // namespace plica

@@ -34,6 +34,8 @@ class Corotational final : public BatchLaw<Corotational, 8> {
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
 
+  [[nodiscard]] bool overbends() const override { return true; }
+
   /// Return the input of the kernels.
   [[nodiscard]] CorotationalStep kernel_step(const Step& step) const;
 

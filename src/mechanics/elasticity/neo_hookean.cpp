@@ -73,7 +73,7 @@ NeoHookean::NeoHookean(const Tissue& tissue, std::vector<NeoHookeanMaterial> mat
       element_cell_(tissue.element_cell),
       rest_(tissue.element_rest_shape),
       batches_(chunks_.batch_count()),
-      flow_batches_(flows() ? chunks_.batch_count() : 0) {
+      flow_batches_(flows_ ? chunks_.batch_count() : 0) {
   require_upright_rest_shapes(tissue);
   parallel_for(places(), [&](std::size_t place) { fit(tissue, place); });
 }
@@ -88,20 +88,20 @@ void NeoHookean::fit(const Tissue& tissue, std::size_t place) {
     const Mat3 D0 = gauss_jacobian(tissue.element_rest_shape[e], g);
     batch.weights[g][lane] = shear_modulus * D0.determinant();
     put((D0.transpose() * D0).inverse(), &batch.metrics[g][0][lane]);
-    if (!flows()) continue;
+    if (!flows_) continue;
     for (int k = 0; k < 9; ++k) flow_batches_[place / batch_size].frames[g][k][lane] = D0.data()[k];
   }
-  if (flows()) flow_batches_[place / batch_size].rates[lane] = relaxation_s > 0 ? 1 / relaxation_s : 0;
+  if (flows_) flow_batches_[place / batch_size].rates[lane] = relaxation_s > 0 ? 1 / relaxation_s : 0;
 }
 
 NeoHookeanStep NeoHookean::kernel_step(const Step& step) const {
   return {.batches = batches_.data(),
-          .flows = flows() ? flow_batches_.data() : nullptr,
+          .flows = flows_ ? flow_batches_.data() : nullptr,
           .elements = elements_.size(),
           .positions = numbers(step.positions),
           .semidefinite_tangent = step.semidefinite_tangent,
           .flowed = step.internal.data(),
-          .flowed_earlier = flows() ? step.internal.data() + batches_.size() * numbers_a_batch : nullptr,
+          .flowed_earlier = flows_ ? step.internal.data() + batches_.size() * numbers_a_batch : nullptr,
           .ahead = step.ahead,
           .rate_s = step.rate_s};
 }
@@ -125,7 +125,7 @@ double NeoHookean::energy(const Step& step) const {
       const Mat3 F = deformation_gradient(points, rest_[e], g), C = F.transpose() * F;
       const double J = F.determinant();
       if (!(J > 0)) return std::numeric_limits<double>::infinity();
-      const double r = flows() ? step.rate_s * flow_batches_[e / batch_size].rates[e % batch_size] : 0;
+      const double r = flows_ ? step.rate_s * flow_batches_[e / batch_size].rates[e % batch_size] : 0;
       double stored = 0.5 * C.trace();
       if (r > 0) {
         // 3 det(C_b + r C)^(1/3)/2 r, minus terms independent of C.
@@ -142,7 +142,7 @@ double NeoHookean::energy(const Step& step) const {
 // Work not stored in the relaxed rest shapes is dissipated.
 EnergyFlow NeoHookean::energy_flow(const MadeStep& made) const {
   EnergyFlow flow = Law::energy_flow(made);
-  if (!flows()) return flow;
+  if (!flows_) return flow;
   Vectors mean(made.end.positions.size(), Vec3::Zero());
   add_forces(made.begin, mean);
   add_forces(made.end, mean);
@@ -153,7 +153,7 @@ EnergyFlow NeoHookean::energy_flow(const MadeStep& made) const {
 }
 
 std::vector<double> NeoHookean::first_internal(const Tissue& /*tissue*/) const {
-  if (!flows()) return {};
+  if (!flows_) return {};
   std::vector<double> internal(2 * batches_.size() * numbers_a_batch);
   for (std::size_t first = 0; first < internal.size(); first += 6 * batch_size)
     for (std::size_t lane = 0; lane < batch_size; ++lane) put(Mat3::Identity(), &internal[first + lane]);
@@ -161,7 +161,7 @@ std::vector<double> NeoHookean::first_internal(const Tissue& /*tissue*/) const {
 }
 
 std::vector<double> NeoHookean::next_internal(const Step& step) const {
-  if (!flows()) return {};
+  if (!flows_) return {};
   const std::size_t size = batches_.size() * numbers_a_batch;
   std::vector<double> internal(2 * size);
   std::copy_n(step.internal.begin(), size, internal.begin() + static_cast<std::ptrdiff_t>(size));
@@ -178,7 +178,7 @@ std::unique_ptr<Law> NeoHookean::after_division(const Tissue& tissue, const Divi
 
 std::vector<double> NeoHookean::internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                         const Division& division) const {
-  if (!flows()) return {};
+  if (!flows_) return {};
   std::vector<std::vector<std::size_t>> of_cell(std::ranges::max(element_cell_).index() + 1);  // elements before
   for (std::size_t e = 0; e < elements_.size(); ++e) of_cell[element_cell_[e].index()].push_back(e);
   const auto where = [](const HexPoints& rest, int g) {

@@ -58,12 +58,9 @@ struct Faces {
 
 template <class Body>
 inline void for_faces(const FaceStep& step, std::size_t first, std::size_t last, const Body& body) {
-  for (std::size_t b = first; b < last; ++b) {
-    const int count = count_in_batch(step.faces, b);
-    for (int lane = 0; lane < count; lane += width)
-      body(Faces{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane,
-                 count - lane < width ? count - lane : width});
-  }
+  for_registers(step.faces, first, last, [&](std::size_t b, int lane, int count) {
+    body(Faces{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane, count});
+  });
 }
 
 // n, and what follows from the area phi(|n|) that it stands for: dphi/dn, and d2phi/dn2 = p (I - q u u^T).

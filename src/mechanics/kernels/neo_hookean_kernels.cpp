@@ -17,12 +17,9 @@ struct Elements {
 
 template <class Body>
 inline void for_elements(const NeoHookeanStep& step, std::size_t first, std::size_t last, const Body& body) {
-  for (std::size_t b = first; b < last; ++b) {
-    const int count = count_in_batch(step.elements, b);
-    for (int lane = 0; lane < count; lane += width)
-      body(Elements{step.batches[b], step.flows ? step.flows + b : nullptr, b, lane},
-           count - lane < width ? count - lane : width);
-  }
+  for_registers(step.elements, first, last, [&](std::size_t b, int lane, int count) {
+    body(Elements{step.batches[b], step.flows ? step.flows + b : nullptr, b, lane}, count);
+  });
 }
 
 // A Gauss point's reference coordinates, in the order of the corners.
@@ -223,12 +220,7 @@ template <bool flows>
         K[pair] = K[pair] + block;
       }
   }
-  for (int pair = 0; pair < 36; ++pair) {
-    const Mat& block = K[pair];
-    const Lanes values[9] = {block.x.x, block.x.y, block.x.z, block.y.x, block.y.y,
-                             block.y.z, block.z.x, block.z.y, block.z.z};
-    for (int i = 0; i < 9; ++i) *reinterpret_cast<Lanes*>(blocks.blocks[pair][i] + e.lane) = values[i];
-  }
+  for (int pair = 0; pair < 36; ++pair) store(K[pair], e.lane, blocks.blocks[pair]);
 }
 
 // All lanes of a batch, those that repeat its last element, too: kernels calculate there.

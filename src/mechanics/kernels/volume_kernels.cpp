@@ -17,12 +17,9 @@ struct Elements {
 
 template <class Body>
 inline void for_elements(const VolumeStep& step, std::size_t first, std::size_t last, const Body& body) {
-  for (std::size_t b = first; b < last; ++b) {
-    const int count = count_in_batch(step.elements, b);
-    for (int lane = 0; lane < count; lane += width)
-      body(Elements{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane,
-                    count - lane < width ? count - lane : width});
-  }
+  for_registers(step.elements, first, last, [&](std::size_t b, int lane, int count) {
+    body(Elements{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane, count});
+  });
 }
 
 // Value of the cell of each element.

@@ -5,7 +5,7 @@
 
 #include "core/parallel.hpp"
 #include "solver/algebra/block_cholesky.hpp"
-#include "solver/algebra/preconditioner.hpp"
+#include "solver/algebra/linear_solver.hpp"
 #include "solver/multigrid/smoother.hpp"
 #include "solver/multigrid/transfer.hpp"
 

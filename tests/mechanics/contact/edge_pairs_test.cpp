@@ -8,7 +8,6 @@
 #include <cstdio>
 
 #include "measure/self_intersections.hpp"
-#include "mechanics/contact/contact_pair.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
 #include "support/roofs.hpp"

@@ -9,7 +9,6 @@
 #include <cstdio>
 
 #include "mechanics/constraints/cell_volume.hpp"
-#include "solver/projection/closed_surface.hpp"
 #include "support/models.hpp"
 #include "support/tissues.hpp"
 
