@@ -1,8 +1,7 @@
 // Kernels of src/mechanics/kernels/ compiled with counting numbers, to count their floating-point operations.
 #pragma once
 
-#include "mechanics/kernels/corotational_kernels.hpp"
-#include "mechanics/kernels/volume_kernels.hpp"
+#include "mechanics/kernels/tables.hpp"
 
 namespace plica::counted {
 

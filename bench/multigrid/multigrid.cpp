@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "solver/algebra/preconditioner.hpp"
+#include "solver/algebra/linear_solver.hpp"
 #include "systems.hpp"
 
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/algebra/block_pattern.hpp"
+#include "solver/algebra/rows.hpp"
 
 namespace plica::multigrid_bench {
 

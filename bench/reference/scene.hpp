@@ -3,7 +3,7 @@
 
 #include "elements.hpp"
 #include "mesh.hpp"
-#include "solver/algebra/block_pattern.hpp"
+#include "solver/algebra/rows.hpp"
 
 namespace plica::reference {
 

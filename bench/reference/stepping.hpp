@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "scene.hpp"
-#include "solver/algebra/preconditioner.hpp"
+#include "solver/algebra/linear_solver.hpp"
 
 namespace plica::reference {
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "measure/measure_set.hpp"
-#include "mechanics/elasticity/corotational.hpp"
 
 namespace plica {
 namespace {
@@ -24,16 +23,15 @@ int elements_through_height(const Cell& cell) {
   return static_cast<int>(edge->nodes.size()) - 1;
 }
 
-bool is_corotational(const Model& model) {
-  return std::ranges::any_of(model.laws,
-                             [](const auto& law) { return dynamic_cast<const Corotational*>(law.get()) != nullptr; });
+bool overbends(const Model& model) {
+  return std::ranges::any_of(model.laws, [](const auto& law) { return law->overbends(); });
 }
 
 }  // namespace
 
 std::optional<double> bending_error(const Model& model, std::span<const Vec3> positions) {
   constexpr double error_per_area_ratio = 0.14, least_bending = 1e-9;
-  if (!is_corotational(model)) return std::nullopt;
+  if (!overbends(model)) return std::nullopt;
   const Tissue& tissue = model.tissue;
   const std::vector<double> apical = area_ratios(tissue, tissue.apical_facets, positions),
                             basal = area_ratios(tissue, tissue.basal_facets, positions);
@@ -54,8 +52,7 @@ int elements_through_height(const Tissue& tissue) {
 }
 
 MeasureSet bending_set() {
-  return set_of("bending", "corotational elasticity",
-                [](const Subject& s) { return kept_if(is_corotational(s.model)); },
+  return set_of("bending", "corotational elasticity", [](const Subject& s) { return kept_if(overbends(s.model)); },
                 {{"bending_error", true, InSummary::last,
                   "Estimated relative error of bending from few elements through the height; depth by one element may "
                   "err five times as much ([convergence](../developers/convergence.md#meshes-of-polygons)).",

@@ -5,10 +5,8 @@
 #include <functional>
 #include <numeric>
 
-#include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/energy.hpp"
-#include "mechanics/surroundings.hpp"
 
 namespace plica {
 
@@ -85,19 +83,12 @@ std::vector<double> activities(const Model& model, const State& state) {
 std::vector<double> strengths(const Model& model) {
   std::vector<double> result(model.tissue.cells.size(), 0.0);
   for (std::size_t l = model.laws.size(); l-- > 0;) {
-    const CellPattern* pattern = model.laws[l]->is_active() ? pattern_of(*model.laws[l]) : nullptr;
+    const CellPattern* pattern = model.laws[l]->is_active() ? model.laws[l]->pattern() : nullptr;
     if (pattern == nullptr || pattern->cells.empty()) continue;
     for (std::size_t c = 0; c < result.size(); ++c)
       if (pattern->cells[c]) result[c] = pattern->strengths[c];
   }
   return result;
-}
-
-const CellPattern* pattern_of(const Law& law) {
-  if (const auto* contraction = dynamic_cast<const Contraction*>(&law)) return &contraction->pattern();
-  if (const auto* cortex = dynamic_cast<const Cortex*>(&law)) return &cortex->pattern();
-  if (const auto* pressure = dynamic_cast<const FacePressure*>(&law)) return &pressure->pattern();
-  return nullptr;
 }
 
 namespace {

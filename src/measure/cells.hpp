@@ -38,9 +38,6 @@ std::vector<double> activities(const Model& model, const State& state);
 /// Factor from profile and variation in that law; cells, 0 outside.
 std::vector<double> strengths(const Model& model);
 
-/// Per-cell activation of a law, including applied pressures; null for a passive law.
-const CellPattern* pattern_of(const Law& law);
-
 /// Volume enclosed by the basal surface, um^3; empty when that surface is not closed.
 std::optional<double> lumen_volume(const Tissue& tissue, std::span<const Vec3> positions);
 

@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -65,9 +64,6 @@ class Constraint {
   [[nodiscard]] virtual double gradient_scale(std::size_t function) const = 0;
   /// Return the largest relative error of c_k caused by rounding of positions (um): a lower bound for convergence.
   [[nodiscard]] virtual double rounding(const Tissue& tissue, double position_rounding) const = 0;
-
-  /// Return the cell of a function, if any; for messages.
-  [[nodiscard]] virtual std::optional<CellId> cell_of(std::size_t /*function*/) const { return std::nullopt; }
 
   /// Return the constraint for the tissue after a division, with nodes at `positions`.
   [[nodiscard]] virtual std::unique_ptr<Constraint> after_division(const Tissue& tissue, const Division& division,

@@ -20,6 +20,7 @@ namespace plica {
 struct Tissue;
 struct Model;
 struct Division;
+struct CellPattern;
 
 /// State of a step: the unknown positions at its end, and everything constant during it. A quantity q of positions
 /// changes at the end of the step at the rate
@@ -184,12 +185,18 @@ class Law {
     return {};
   }
 
-  /// Return the internal state with activities set from outside instead of by programs (given_activities.hpp).
+  /// Return the internal state with activities set from outside instead of by programs (GivenActivities).
   /// std::logic_error for laws that are not active.
   [[nodiscard]] virtual std::vector<double> with_activities(std::span<const double> /*internal*/,
                                                             std::span<const double> /*activities*/) const {
     throw std::logic_error(label() + ": is not an active law");
   }
+
+  /// Return region, amplitudes and ablations of a law that acts by cells; null for others.
+  [[nodiscard]] virtual const CellPattern* pattern() const { return nullptr; }
+
+  /// Whether a sheet of few of its elements through the height bends too far (measure/bending_error.hpp).
+  [[nodiscard]] virtual bool overbends() const { return false; }
 
   /// Return nodal masses, g; empty for none. At most one law of a model has masses.
   [[nodiscard]] virtual std::span<const double> masses() const { return {}; }

@@ -1,6 +1,5 @@
 #include "mechanics/surroundings.hpp"
 
-#include "mechanics/energy.hpp"
 #include "tissue/division.hpp"
 
 namespace plica {
@@ -17,16 +16,6 @@ std::vector<double> drag_coefficients(const Tissue& tissue, double drag) {
   return coefficients;
 }
 
-Vec3 change(const Step& step, std::size_t node) {
-  return step.positions[node] - step.before([node](std::span<const Vec3> x) { return x[node]; });
-}
-
-double norm(std::span<const double> numbers) {
-  double sum = 0;
-  for (const double number : numbers) sum += number * number;
-  return std::sqrt(sum);
-}
-
 std::vector<double> lumped_masses(const Tissue& tissue, double density) {
   std::vector<double> masses(tissue.node_count(), 0.0);
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
@@ -37,82 +26,12 @@ std::vector<double> lumped_masses(const Tissue& tissue, double density) {
 
 }  // namespace
 
-SurfaceDrag::SurfaceDrag(const Tissue& tissue, double drag)
-    : drag_(drag), coefficients_(drag_coefficients(tissue, drag)) {}
-
-std::unique_ptr<Law> SurfaceDrag::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
-  return std::make_unique<SurfaceDrag>(tissue, drag_);
+SurfaceDrag::SurfaceDrag(const Tissue& tissue, double drag) : drag_(drag) {
+  coefficients_ = drag_coefficients(tissue, drag);
 }
 
-std::unique_ptr<Law> SurfaceDrag::grown(const Tissue& tissue, std::span<const ElementId>) const {
-  return std::make_unique<SurfaceDrag>(tissue, drag_);
-}
-
-double SurfaceDrag::energy(const Step& step) const {
-  double sum = 0;
-  for (std::size_t n = 0; n < coefficients_.size(); ++n)
-    sum += 0.5 * coefficients_[n] / step.rate_s * change(step, n).squaredNorm();
-  return sum;
-}
-
-EnergyFlow SurfaceDrag::energy_flow(const MadeStep& made) const { return viscous_energy_flow(*this, made); }
-
-void SurfaceDrag::add_forces(const Step& step, std::span<Vec3> forces) const {
-  for (std::size_t n = 0; n < coefficients_.size(); ++n) forces[n] -= coefficients_[n] / step.rate_s * change(step, n);
-}
-
-void SurfaceDrag::add_tangent_product(const Step& step, std::span<const Vec3> direction,
-                                      std::span<Vec3> product) const {
-  for (std::size_t n = 0; n < coefficients_.size(); ++n) product[n] += coefficients_[n] / step.rate_s * direction[n];
-}
-
-void SurfaceDrag::add_tangent(const Step& step, TangentSink& tangent) const {
-  for (std::size_t n = 0; n < coefficients_.size(); ++n)
-    tangent.add_block(NodeId(n), NodeId(n), coefficients_[n] / step.rate_s * Mat3::Identity());
-}
-
-double SurfaceDrag::rounding(const Step& step, double position_rounding) const {
-  return norm(coefficients_) / step.rate_s * position_rounding;
-}
-
-Inertia::Inertia(const Tissue& tissue, double density) : density_(density), masses_(lumped_masses(tissue, density)) {}
-
-std::unique_ptr<Law> Inertia::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
-  return std::make_unique<Inertia>(tissue, density_);
-}
-
-std::unique_ptr<Law> Inertia::grown(const Tissue& tissue, std::span<const ElementId>) const {
-  return std::make_unique<Inertia>(tissue, density_);
-}
-
-double Inertia::energy(const Step& step) const {
-  const double h = step.rate_s;
-  double sum = 0;
-  for (std::size_t n = 0; n < masses_.size(); ++n)
-    sum += 0.5 * masses_[n] / (h * h) *
-           (step.positions[n] - step.previous_positions[n] - h * step.previous_velocities[n]).squaredNorm();
-  return sum;
-}
-
-void Inertia::add_forces(const Step& step, std::span<Vec3> forces) const {
-  const double h = step.rate_s;
-  for (std::size_t n = 0; n < masses_.size(); ++n)
-    forces[n] -=
-        masses_[n] / (h * h) * (step.positions[n] - step.previous_positions[n] - h * step.previous_velocities[n]);
-}
-
-void Inertia::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
-  for (std::size_t n = 0; n < masses_.size(); ++n)
-    product[n] += masses_[n] / (step.rate_s * step.rate_s) * direction[n];
-}
-
-void Inertia::add_tangent(const Step& step, TangentSink& tangent) const {
-  for (std::size_t n = 0; n < masses_.size(); ++n)
-    tangent.add_block(NodeId(n), NodeId(n), masses_[n] / (step.rate_s * step.rate_s) * Mat3::Identity());
-}
-
-double Inertia::rounding(const Step& step, double position_rounding) const {
-  return norm(masses_) / (step.rate_s * step.rate_s) * position_rounding;
+Inertia::Inertia(const Tissue& tissue, double density) : density_(density) {
+  coefficients_ = lumped_masses(tissue, density);
 }
 
 FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellPattern pattern, double pressure, Program program)
@@ -138,29 +57,6 @@ FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellPattern pat
         for (int i = 0; i < 4; ++i) loads_[facet.nodes[i].index()] += shape[i] * push;
       }
   }
-}
-
-double FacePressure::energy(const Step& step) const {
-  double work = 0;
-  for (std::size_t n = 0; n < loads_.size(); ++n) work += loads_[n].dot(step.positions[n]);
-  return -program_.at(step.end_time_s) * work;
-}
-
-EnergyFlow FacePressure::energy_flow(const MadeStep& made) const {
-  double work = 0;
-  for (std::size_t n = 0; n < loads_.size(); ++n)
-    work += loads_[n].dot(made.whole.positions[n] - made.whole.previous_positions[n]);
-  return {.active = program_.at(made.whole.end_time_s) * work};
-}
-
-void FacePressure::add_forces(const Step& step, std::span<Vec3> forces) const {
-  const double activity = program_.at(step.end_time_s);
-  for (std::size_t n = 0; n < loads_.size(); ++n) forces[n] += activity * loads_[n];
-}
-
-std::unique_ptr<Law> FacePressure::after_division(const Tissue& tissue, const Division& division,
-                                                  std::span<const Vec3>) const {
-  return std::make_unique<FacePressure>(tissue, on_apical_, pattern_.after_division(division), pressure_, program_);
 }
 
 }  // namespace plica

@@ -35,8 +35,8 @@ bool starts_abruptly(const Simulation& simulation) {
   const State at_rest = rest_state(model);
   constexpr double gentle = 0.01;  // part of the present force
   return std::ranges::any_of(model.laws, [&](const auto& law) {
-    return pattern_of(*law) != nullptr && sum_of_norms(forces_of_law(model, at_rest, *law)) >
-                                              gentle * sum_of_norms(forces_of_law(model, simulation.state(), *law));
+    return law->pattern() != nullptr && sum_of_norms(forces_of_law(model, at_rest, *law)) >
+                                            gentle * sum_of_norms(forces_of_law(model, simulation.state(), *law));
   });
 }
 

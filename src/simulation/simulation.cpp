@@ -11,7 +11,7 @@
 #include "core/clock.hpp"
 #include "core/errors.hpp"
 #include "measure/cell_columns.hpp"
-#include "mechanics/active/given_activities.hpp"
+#include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
 #include "scenario/remedies.hpp"

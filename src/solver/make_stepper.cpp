@@ -4,7 +4,6 @@
 
 #include <stdexcept>
 
-#include "solver/projection/linearly_implicit.hpp"
 #include "solver/projection/projected_stepper.hpp"
 #include "solver/step/newton_stepper.hpp"
 

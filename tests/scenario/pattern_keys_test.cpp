@@ -223,7 +223,7 @@ TEST(AblationKeys, FacesTimesAndRegionsAreThoseGiven) {
   const std::unique_ptr<Model> model = make_model(scenario_of(
       sheet + "[ablation.cut]\nregion = \"first\"\nfaces = [\"lateral\"]\nat_min = 1\nuntil_min = 3\nremaining = 0.5"));
   const Cortex &top = cortex_of(*model, "top"), &walls = cortex_of(*model, "walls");
-  EXPECT_TRUE(top.pattern().ablations.empty());
+  EXPECT_TRUE(top.pattern()->ablations.empty());
   for (const auto& [time_s, first] : {std::pair(60.0, 1.0), {61.0, 0.5}, {180.0, 0.5}, {181.0, 1.0}}) {
     EXPECT_EQ(*top.activity_of(CellId(0), time_s, {}), 1);
     EXPECT_EQ(*walls.activity_of(CellId(0), time_s, {}), first) << time_s;
@@ -244,7 +244,7 @@ TEST(AblationKeys, FacesTimesAndRegionsAreThoseGiven) {
 
   const std::unique_ptr<Model> other =
       make_model(scenario_of(sheet + "[ablation.cut]\nregion = \"first\"\nonly = [\"cortex.top\"]\nat_s = 0"));
-  EXPECT_TRUE(cortex_of(*other, "walls").pattern().ablations.empty());
+  EXPECT_TRUE(cortex_of(*other, "walls").pattern()->ablations.empty());
   EXPECT_EQ(*cortex_of(*other, "top").activity_of(CellId(0), 1, {}), 0);
 
   const std::unique_ptr<Model> all =

@@ -1,7 +1,7 @@
 // Activities, arrays, pulses and divisions in the loop: who acts or divides when, and what a run keeps at every step.
 #include "core/errors.hpp"
 #include "measure/cells.hpp"
-#include "mechanics/active/given_activities.hpp"
+#include "mechanics/active/cell_pattern.hpp"
 #include "scenario/load.hpp"
 #include "support/divided.hpp"
 #include "support/ran.hpp"

@@ -45,7 +45,8 @@ inline Model model_of(const Roofs& roofs, const SelfContactRule& rule) {
 
 /// The pairs of edges of an internal state of contact.
 inline std::vector<ContactPair> edges_of(std::span<const double> internal) {
-  std::vector<ContactPair> pairs = SelfContact::pairs_of(internal);
+  const std::span<const ContactPair> all = SelfContact::pairs_of(internal);
+  std::vector<ContactPair> pairs(all.begin(), all.end());
   std::erase_if(pairs, [](const ContactPair& pair) { return !pair.is_of_edges(); });
   return pairs;
 }

@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "measure/self_intersections.hpp"
-#include "mechanics/contact/closest_point.hpp"
+#include "mechanics/contact/edge_pairs.hpp"
 #include "mechanics/contact/self_contact.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/bodies.hpp"

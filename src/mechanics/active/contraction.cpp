@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "mechanics/active/given_activities.hpp"
+#include "mechanics/active/cell_pattern.hpp"
 #include "tissue/contractile_lines.hpp"
 #include "tissue/division.hpp"
 
@@ -106,8 +106,6 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
   return springs;
 }
 
-double Contraction::activity(double delay_s, double time_s) const { return program_.delayed_at(delay_s, time_s); }
-
 double Contraction::activity(CellId cell, double delay_s, double time_s, std::span<const double> internal) const {
   const double part = pattern_.remaining(cell, time_s);
   if (const auto given = GivenActivities(internal, 0).of(cell)) return part * *given;
@@ -123,28 +121,10 @@ std::optional<double> Contraction::activity_of(CellId cell, double time_s, std::
   return activity(cell, pattern_.delays_s[cell.index()], time_s, internal);
 }
 
-std::vector<double> Contraction::with_activities(std::span<const double> internal,
-                                                 std::span<const double> activities) const {
-  return GivenActivities::put(internal, 0, activities);
-}
-
-std::vector<double> Contraction::internal_after_division(std::span<const double> internal, const Tissue&,
-                                                         const Division& division) const {
-  return GivenActivities(internal, 0).after_division(division);
-}
-
 std::vector<double> Contraction::delays_s() const {
   std::vector<double> delays;
   for (const Spring& spring : springs_) delays.push_back(spring.delay_s);
   return delays;
-}
-
-std::vector<double> Contraction::program_points_s() const {
-  return pattern_.with_ablations(program_.delayed_points_s(delays_s()));
-}
-
-std::vector<double> Contraction::program_jumps_s() const {
-  return pattern_.with_ablations(program_.delayed_jumps_s(delays_s()));
 }
 
 // The tension T(l) of a spring over a step, its derivative dT/dl, and the energy it derives from.
@@ -184,10 +164,8 @@ struct Contraction::Pulled {
 
 Contraction::Contraction(std::vector<Spring> springs, Program program, CellPattern pattern)
     : springs_(std::move(springs)), program_(std::move(program)), pattern_(std::move(pattern)) {
-  start_.push_back(0);
   for (const Spring& spring : springs_) {
-    nodes_.insert(nodes_.end(), spring.nodes.begin(), spring.nodes.end());
-    start_.push_back(nodes_.size());
+    groups_.add(spring.nodes);
     longest_ = std::max(longest_, spring.nodes.size());
   }
 }
@@ -197,7 +175,7 @@ void Contraction::for_springs(const Step& step, const Take& take) const {
   std::vector<Segment> segments(longest_);
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     Pulled pulled;
-    pulled.nodes = std::span(nodes_).subspan(start_[k], start_[k + 1] - start_[k]);
+    pulled.nodes = groups_[k];
     for (std::size_t s = 0; s + 1 < pulled.nodes.size(); ++s) {
       const Vec3 d = step.positions[pulled.nodes[s + 1].index()] - step.positions[pulled.nodes[s].index()];
       const double length = d.norm();
@@ -220,7 +198,7 @@ EnergyFlow Contraction::energy_flow(const MadeStep& made) const {
   EnergyFlow flow;
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     const Spring& spring = springs_[k];
-    const auto nodes = std::span(nodes_).subspan(start_[k], start_[k + 1] - start_[k]);
+    const std::span<const NodeId> nodes = groups_[k];
     const double before = chain_length(nodes, step.previous_positions), after = chain_length(nodes, step.positions);
     const auto potential = [&](double length) {
       const double stretch = std::max(0.0, length - spring.rest_length);
@@ -268,12 +246,6 @@ void Contraction::add_tangent(const Step& step, TangentSink& tangent) const {
       tangent.add_block(a, b, -block);
     }
   });
-}
-
-NodeGroups Contraction::node_groups(std::span<const double> /*internal*/) const {
-  NodeGroups groups;
-  for (const Spring& spring : springs_) groups.add(spring.nodes);
-  return groups;
 }
 
 namespace {

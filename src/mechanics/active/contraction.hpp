@@ -55,28 +55,36 @@ class Contraction final : public Law {
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
+  [[nodiscard]] NodeGroups node_groups(std::span<const double> /*internal*/) const override { return groups_; }
   /// Split each cut edge into two springs in series, with k scaled to keep the tension; edges of the new facet have
   /// none. Diagonals stay whole.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
-  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                            const Division& division) const override;
+  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& /*tissue*/,
+                                                            const Division& division) const override {
+    return GivenActivities(internal, 0).after_division(division);
+  }
 
   [[nodiscard]] const Program& program() const { return program_; }
   /// Return the activity for springs with a delay: the program `delay_s` earlier, 0 before its time 0.
-  [[nodiscard]] double activity(double delay_s, double time_s) const;
+  [[nodiscard]] double activity(double delay_s, double time_s) const { return program_.delayed_at(delay_s, time_s); }
   /// Return the time at which the last spring reaches the end of the program, s.
   [[nodiscard]] double last_program_point_s() const { return program_.delayed_points_s(delays_s()).back(); }
   [[nodiscard]] bool is_active() const override { return true; }
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
                                                   std::span<const double> internal) const override;
   [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
-                                                    std::span<const double> activities) const override;
-  [[nodiscard]] std::vector<double> program_points_s() const override;
-  [[nodiscard]] std::vector<double> program_jumps_s() const override;
+                                                    std::span<const double> activities) const override {
+    return GivenActivities::put(internal, 0, activities);
+  }
+  [[nodiscard]] std::vector<double> program_points_s() const override {
+    return pattern_.with_ablations(program_.delayed_points_s(delays_s()));
+  }
+  [[nodiscard]] std::vector<double> program_jumps_s() const override {
+    return pattern_.with_ablations(program_.delayed_jumps_s(delays_s()));
+  }
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
-  [[nodiscard]] const CellPattern& pattern() const { return pattern_; }
+  [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
 
  private:
   struct Pulled;  // spring at given positions
@@ -88,9 +96,8 @@ class Contraction final : public Law {
   [[nodiscard]] std::vector<double> delays_s() const;
 
   std::vector<Spring> springs_;
-  std::vector<NodeId> nodes_;       // all springs, consecutively; read by the loops
-  std::vector<std::size_t> start_;  // springs + 1, in nodes_
-  std::size_t longest_ = 0;         // nodes of the longest chain
+  NodeGroups groups_;        // nodes of all springs, read by the loops
+  std::size_t longest_ = 0;  // nodes of the longest chain
   Program program_;
   CellPattern pattern_;
 };

@@ -9,8 +9,6 @@
 namespace plica {
 namespace {
 
-constexpr std::size_t batch_size = ElementChunks::batch_size;
-
 double area_at_rest(const Tissue& tissue, const Face& face) {
   std::array<Vec3, 4> corners;
   for (int i = 0; i < 4; ++i) corners[i] = tissue.rest_positions[face.nodes[i].index()];
@@ -30,11 +28,9 @@ std::vector<Face> acting_faces(const Tissue& tissue, CellSide side, const CellPa
 }
 
 // As elements whose corners are those of the face, twice.
-ElementChunks chunks_of(const Tissue& tissue, const std::vector<Face>& faces) {
+ElementChunks chunks_of(const Tissue& tissue, const std::vector<std::array<NodeId, 4>>& faces) {
   std::vector<std::array<NodeId, 8>> corners;
-  corners.reserve(faces.size());
-  for (const auto& [n, cell, beyond, share] : faces)
-    corners.push_back({n[0], n[1], n[2], n[3], n[0], n[1], n[2], n[3]});
+  for (const auto& n : faces) corners.push_back({n[0], n[1], n[2], n[3], n[0], n[1], n[2], n[3]});
   return {tissue, corners};
 }
 
@@ -58,33 +54,30 @@ double integral_of_yielding(double w, double q) {
 }  // namespace
 
 Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kernels kernels)
-    : rule_(std::move(rule)),
+    : BatchLaw({}, {tissue, {}}, kernels),
+      rule_(std::move(rule)),
       pattern_(std::move(pattern)),
-      kernels_(kernels),
       faces_(acting_faces(tissue, rule_.side, pattern_)),
-      own_(tissue, rule_.own),
-      chunks_(chunks_of(tissue, faces_)),
-      batches_(chunks_.batch_count()) {
+      stretches_(faces_.size(), 1),
+      own_(tissue, rule_.own) {
   for (const Face& face : faces_) {
+    elements_.push_back(face.nodes);
     rest_areas_.push_back(area_at_rest(tissue, face));
     strengths_.push_back(strength_of(face, pattern_));
   }
-  stretches_.assign(faces_.size(), 1);
+  chunks_ = chunks_of(tissue, elements_);
+  batches_.resize(chunks_.batch_count());
   take_rest_areas();
 }
 
 void Cortex::take_rest_areas() {
   constexpr double blunt = 0.05;  // of the area at rest that a Gauss point has
-  for (std::size_t place = 0; place < batches_.size() * batch_size; ++place) {
+  for (std::size_t place = 0; place < places(); ++place) {
     const std::size_t face = std::min(place, faces_.size() - 1);
     FaceBatch& batch = batches_[place / batch_size];
     batch.blunt[place % batch_size] = 0.25 * blunt * rest_areas_[face];
     for (int i = 0; i < 4; ++i) batch.nodes[i][place % batch_size] = 3 * faces_[face].nodes[i].number();
   }
-}
-
-const FaceKernels& Cortex::kernels() const {
-  return kernels_for(kernels_, generic::face_kernels, avx2::face_kernels, avx512::face_kernels);
 }
 
 std::optional<double> Cortex::activity_of(CellId cell, double time_s, std::span<const double> internal) const {
@@ -196,7 +189,7 @@ EnergyFlow Cortex::energy_flow(const MadeStep& made) const {
 }
 
 std::vector<double> Cortex::areas(std::span<const Vec3> positions) const {
-  std::vector<double> areas(batches_.size() * batch_size);
+  std::vector<double> areas(places());
   const FaceStep at{batches_.data(), faces_.size(), numbers(positions), nullptr, nullptr, false};
   chunks_.for_batches(
       [&](std::size_t first, std::size_t last) { kernels().write_areas(at, first, last, areas.data()); });
@@ -204,26 +197,21 @@ std::vector<double> Cortex::areas(std::span<const Vec3> positions) const {
   return areas;
 }
 
-struct Cortex::Pull {
-  std::vector<double> tensions, slopes;  // faces, filled up to whole batches
-  FaceStep step;
-};
-
-Cortex::Pull Cortex::pull(const Step& step) const {
-  Pull pull{areas(step.positions), std::vector<double>(batches_.size() * batch_size, 0.0), {}};
-  pull.tensions.resize(pull.slopes.size(), 0.0);
+Cortex::Pull Cortex::kernel_step(const Step& step) const {
+  Pull pull{{}, areas(step.positions), std::vector<double>(places(), 0.0)};
+  pull.of_tensions.resize(places(), 0.0);
   chunks_.for_elements([&](std::size_t f) {
-    const Response response = respond(f, pull.tensions[f], step, false);
-    pull.tensions[f] = response.tension;
-    pull.slopes[f] = response.slope;
+    const Response response = respond(f, pull.of_tensions[f], step, false);
+    pull.of_tensions[f] = response.tension;
+    pull.of_slopes[f] = response.slope;
   });
-  pull.step = {batches_.data(),      faces_.size(),      numbers(step.positions),
-               pull.tensions.data(), pull.slopes.data(), step.semidefinite_tangent};
+  static_cast<FaceStep&>(pull) = {batches_.data(),         faces_.size(),         numbers(step.positions),
+                                  pull.of_tensions.data(), pull.of_slopes.data(), step.semidefinite_tangent};
   return pull;
 }
 
 std::vector<double> Cortex::tensions(const Step& step) const {
-  std::vector<double> tensions = pull(step).tensions;
+  std::vector<double> tensions = kernel_step(step).of_tensions;
   tensions.resize(faces_.size());
   return tensions;
 }
@@ -231,45 +219,6 @@ std::vector<double> Cortex::tensions(const Step& step) const {
 double Cortex::energy(const Step& step) const {
   const std::vector<double> now = areas(step.positions);
   return chunks_.sum_over_elements([&](std::size_t f) { return respond(f, now[f], step, true).energy; });
-}
-
-void Cortex::add_forces(const Step& step, std::span<Vec3> forces) const {
-  const Pull at = pull(step);
-  chunks_.for_batches(
-      [&](std::size_t first, std::size_t last) { kernels().add_forces(at.step, first, last, numbers(forces)); });
-}
-
-void Cortex::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
-  const Pull at = pull(step);
-  chunks_.for_batches([&](std::size_t first, std::size_t last) {
-    kernels().add_product(at.step, first, last, numbers(direction), numbers(product));
-  });
-}
-
-void Cortex::add_tangent(const Step& step, TangentSink& tangent) const {
-  const Pull at = pull(step);
-  const auto add_batch = [&](std::size_t batch) {
-    FaceBlocks blocks;
-    kernels().write_blocks(at.step, batch, blocks);
-    for (std::size_t f = batch * batch_size; f < std::min((batch + 1) * batch_size, faces_.size()); ++f)
-      for (int i = 0; i < 4; ++i)
-        for (int j = 0; j <= i; ++j) {
-          Mat3 block;
-          for (int k = 0; k < 9; ++k) block(k % 3, k / 3) = blocks.blocks[i * (i + 1) / 2 + j][k][f % batch_size];
-          tangent.add_block(faces_[f].nodes[i], faces_[f].nodes[j], block);
-        }
-  };
-  chunks_.for_batches(
-      [&](std::size_t first, std::size_t last) {
-        for (std::size_t batch = first; batch < last; ++batch) add_batch(batch);
-      },
-      tangent.takes_apart());
-}
-
-NodeGroups Cortex::node_groups(std::span<const double> /*internal*/) const {
-  NodeGroups groups;
-  for (const Face& face : faces_) groups.add(face.nodes);
-  return groups;
 }
 
 std::vector<double> Cortex::first_internal(const Tissue& tissue) const {
@@ -292,11 +241,6 @@ std::vector<double> Cortex::next_internal(const Step& step) const {
     internal = joined(std::move(internal),
                       own_.numbers(step.positions, step.end_time_s, step.internal.subspan(area_numbers())));
   return joined(std::move(internal), given(step.internal).numbers());
-}
-
-std::vector<double> Cortex::with_activities(std::span<const double> internal,
-                                            std::span<const double> activities) const {
-  return GivenActivities::put(internal, own_numbers(), activities);
 }
 
 // A face comes from the one with its nodes, else from all between its cells. A face between daughters comes from none.

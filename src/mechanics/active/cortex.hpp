@@ -9,13 +9,9 @@
 #include <vector>
 
 #include "mechanics/active/cell_pattern.hpp"
-#include "mechanics/active/given_activities.hpp"
 #include "mechanics/active/own_state.hpp"
 #include "mechanics/active/program.hpp"
-#include "mechanics/kernels/element_chunks.hpp"
-#include "mechanics/kernels/face_kernels.hpp"
-#include "mechanics/kernels/kernels.hpp"
-#include "mechanics/law.hpp"
+#include "mechanics/kernels/batch_law.hpp"
 #include "tissue/faces.hpp"
 
 namespace plica {
@@ -37,18 +33,13 @@ struct CortexRule {
 /// Cortex law. Cell strengths scale all terms. A lateral face is shared by two cells and takes the mean of their
 /// parameters (0 for an inactive cell); at a boundary it takes those of its one cell; on a mirror plane or at the end
 /// of a slice, half of them. The semidefinite tangent omits faces under compression and changes of shape within a face.
-class Cortex final : public Law {
+class Cortex final : public BatchLaw<Cortex, 4> {
  public:
   Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "cortex"; }
-  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Cortex>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
   [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override;
-  void add_forces(const Step& step, std::span<Vec3> forces) const override;
-  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
-  void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
 
   /// Return, if areas relax, stress-free / reference areas at the beginning of this step and of the previous one; then
   /// cell states, if used; then overridden activities, if any.
@@ -69,15 +60,19 @@ class Cortex final : public Law {
                                                   std::span<const double> internal) const override;
   /// Override the activity of the tension; stiffness keeps its program.
   [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
-                                                    std::span<const double> activities) const override;
+                                                    std::span<const double> activities) const override {
+    return GivenActivities::put(internal, own_numbers(), activities);
+  }
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
-  [[nodiscard]] const CellPattern& pattern() const { return pattern_; }
+  [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
   /// Areas (um^2) and tensions (nN/um) of the faces at the end of a step.
   [[nodiscard]] std::vector<double> areas(std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<double> tensions(const Step& step) const;
 
  private:
+  friend BatchLaw;
+  static constexpr std::array tables = {&generic::face_kernels, &avx2::face_kernels, &avx512::face_kernels};
   struct Response {  // response of a face to its area
     double energy = 0, tension = 0, slope = 0;
   };
@@ -87,8 +82,10 @@ class Cortex final : public Law {
   [[nodiscard]] Response elastic(std::size_t face, double area, const Step& step, double b, bool with_energy) const;
   [[nodiscard]] Response crowded(std::size_t face, double area, bool with_energy) const;
   [[nodiscard]] double stiffening_of(std::size_t face, const Step& step) const;
-  struct Pull;  // all faces at the end of a step, for kernels
-  [[nodiscard]] Pull pull(const Step& step) const;
+  struct Pull : FaceStep {                       // all faces at the end of a step
+    std::vector<double> of_tensions, of_slopes;  // faces, filled up to whole batches
+  };
+  [[nodiscard]] Pull kernel_step(const Step& step) const;
   [[nodiscard]] bool flows() const { return rule_.relaxation_s > 0; }
   [[nodiscard]] double rest_area_before(std::size_t face, const Step& step) const;
   class Origins;  // faces before a division that faces after it come from
@@ -103,17 +100,14 @@ class Cortex final : public Law {
   [[nodiscard]] double stiffening(CellId cell, const Step& step) const;
   template <class OfCell>
   [[nodiscard]] double of_face(std::size_t face, const OfCell& of_cell) const;
-  [[nodiscard]] const FaceKernels& kernels() const;
 
   CortexRule rule_;
   CellPattern pattern_;
-  Kernels kernels_;
   std::vector<Face> faces_;         // faces with nonzero strength
   std::vector<double> rest_areas_;  // faces; um^2: A_r
   std::vector<double> stretches_;   // faces; A_r / area in the undeformed tissue: 1 unless born after it
   std::vector<double> strengths_;   // faces
   OwnState own_;
-  ElementChunks chunks_;
   std::vector<FaceBatch> batches_;
 };
 

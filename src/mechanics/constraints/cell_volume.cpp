@@ -16,47 +16,32 @@ void add_volume_hessian(const std::array<NodeId, 8>& nodes, const HexPoints& poi
     for (int j = 0; j < i; ++j) tangent.add_block(nodes[i], nodes[j], cross_matrix(scale * hessian[i][j]));
 }
 
-}  // namespace
-
-VolumeElements::VolumeElements(const Tissue& tissue, Kernels kernels, Values values)
-    : kernels_(kernels),
-      values_(values),
-      chunks_(tissue, tissue.elements, tissue.element_cell),
-      batches_(chunks_.batch_count()) {
-  parallel_for(batches_.size() * ElementChunks::batch_size, [&](std::size_t place) { fit(tissue, place); });
-}
-
-void VolumeElements::fit(const Tissue& tissue, std::size_t place) {
-  // Places after the last element repeat it.
-  const std::size_t e = std::min(place, chunks_.element_count() - 1), lane = place % ElementChunks::batch_size;
-  VolumeBatch& batch = batches_[place / ElementChunks::batch_size];
+// Sets the data of a place for an element; places after the last element repeat it. `owner`: index of the pressure or
+// the bulk modulus of an element.
+template <class Owner>
+void fit(const Tissue& tissue, std::size_t place, const Owner& owner, std::vector<VolumeBatch>& batches) {
+  const std::size_t e = std::min(place, tissue.elements.size() - 1), lane = place % ElementChunks::batch_size;
+  VolumeBatch& batch = batches[place / ElementChunks::batch_size];
   for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * tissue.elements[e][i].number();
-  batch.owners[lane] = values_ == Values::of_cells ? tissue.element_cell[e].number() : static_cast<int>(e);
+  batch.owners[lane] = owner(e);
   batch.rest_volumes[lane] = hex_volume(tissue.element_rest_shape[e]);
 }
 
-void VolumeElements::take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements) {
-  for (const ElementId e : elements) fit(tissue, e.index());
-}
-
-// In the last batch, lanes after the last element repeat it.
-void VolumeElements::set_rest_volume(std::size_t element, double volume) {
-  const bool is_last = element + 1 == chunks_.element_count();
-  const std::size_t end = is_last ? batches_.size() * ElementChunks::batch_size : element + 1;
-  for (std::size_t place = element; place < end; ++place)
-    batches_[place / ElementChunks::batch_size].rest_volumes[place % ElementChunks::batch_size] = volume;
-}
-
-const VolumeKernels& VolumeElements::kernels() const {
-  return kernels_for(kernels_, generic::volume_kernels, avx2::volume_kernels, avx512::volume_kernels);
-}
+}  // namespace
 
 CellVolumes::CellVolumes(const Tissue& tissue, Kernels kernels)
     : elements_(tissue.elements),
       element_cell_(tissue.element_cell),
       targets_(tissue.cells.size(), 0.0),
-      volumes_(tissue, kernels) {
-  for (std::size_t e = 0; e < elements_.size(); ++e) targets_[element_cell_[e].index()] += volumes_.rest_volume(e);
+      chunks_(tissue, tissue.elements, tissue.element_cell),
+      batches_(chunks_.batch_count()),
+      kernels_(&kernels_for(kernels, generic::volume_kernels, avx2::volume_kernels, avx512::volume_kernels)) {
+  parallel_for(batches_.size() * ElementChunks::batch_size, [&](std::size_t place) {
+    fit(
+        tissue, place, [&](std::size_t e) { return element_cell_[e].number(); }, batches_);
+  });
+  for (std::size_t e = 0; e < elements_.size(); ++e)
+    targets_[element_cell_[e].index()] += hex_volume(tissue.element_rest_shape[e]);
   take_targets(tissue);
 }
 
@@ -71,7 +56,7 @@ CellVolumes CellVolumes::grown(const Tissue& tissue) const {
 }
 
 VolumeStep CellVolumes::kernel_step(std::span<const Vec3> positions, std::span<const double> pressures) const {
-  return {.batches = volumes_.batches(),
+  return {.batches = batches_.data(),
           .elements = elements_.size(),
           .positions = numbers(positions),
           .pressures = pressures.data(),
@@ -88,8 +73,8 @@ std::vector<double> CellVolumes::volumes(std::span<const Vec3> positions) const 
 void CellVolumes::values(std::span<const Vec3> positions, std::span<double> of_cells) const {
   std::fill(of_cells.begin(), of_cells.end(), 0.0);
   const VolumeStep at = kernel_step(positions, {});
-  volumes_.chunks().for_batches(
-      [&](std::size_t first, std::size_t last) { volumes_.kernels().add_volumes(at, first, last, of_cells.data()); });
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) { kernels_->add_volumes(at, first, last, of_cells.data()); });
 }
 
 std::vector<double> CellVolumes::relative_errors(std::span<const Vec3> positions) const {
@@ -132,29 +117,28 @@ std::vector<double> CellVolumes::multipliers_after_division(std::span<const doub
 
 void CellVolumes::gradients(std::span<const Vec3> positions, std::span<Vec3> of_elements) const {
   const VolumeStep at = kernel_step(positions, {});
-  volumes_.chunks().for_batches([&](std::size_t first, std::size_t last) {
-    volumes_.kernels().write_gradients(at, first, last, numbers(of_elements));
-  });
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) { kernels_->write_gradients(at, first, last, numbers(of_elements)); });
 }
 
 void CellVolumes::add_forces(std::span<const Vec3> positions, std::span<const double> pressures,
                              std::span<Vec3> forces) const {
   const VolumeStep at = kernel_step(positions, pressures);
-  volumes_.chunks().for_batches(
-      [&](std::size_t first, std::size_t last) { volumes_.kernels().add_forces(at, first, last, numbers(forces)); });
+  chunks_.for_batches(
+      [&](std::size_t first, std::size_t last) { kernels_->add_forces(at, first, last, numbers(forces)); });
 }
 
 void CellVolumes::add_tangent_product(std::span<const Vec3> positions, std::span<const double> pressures,
                                       std::span<const Vec3> direction, std::span<Vec3> product) const {
   const VolumeStep at = kernel_step(positions, pressures);
-  volumes_.chunks().for_batches([&](std::size_t first, std::size_t last) {
-    volumes_.kernels().add_product(at, first, last, numbers(direction), numbers(product));
+  chunks_.for_batches([&](std::size_t first, std::size_t last) {
+    kernels_->add_product(at, first, last, numbers(direction), numbers(product));
   });
 }
 
 void CellVolumes::add_tangent(std::span<const Vec3> positions, std::span<const double> pressures,
                               TangentSink& tangent) const {
-  volumes_.chunks().for_elements(
+  chunks_.for_elements(
       [&](std::size_t e) {
         const double pressure = pressures[element_cell_[e].index()];
         add_volume_hessian(elements_[e], gather(positions, elements_[e]), -pressure, tangent);
@@ -163,12 +147,20 @@ void CellVolumes::add_tangent(std::span<const Vec3> positions, std::span<const d
 }
 
 Dilatation::Dilatation(const Tissue& tissue, std::vector<double> bulk_moduli, bool cells_are_exact, Kernels kernels)
-    : bulk_moduli_(tissue, std::move(bulk_moduli)),
-      cells_are_exact_(cells_are_exact),
-      kernels_(kernels),
-      volumes_(tissue, kernels, VolumeElements::Values::of_elements) {
-  if (!cells_are_exact || tissue.elements.size() > tissue.cells.size()) elements_ = tissue.elements;
+    : BatchLaw({}, {tissue, {}}, kernels),
+      bulk_moduli_(tissue, std::move(bulk_moduli)),
+      cells_are_exact_(cells_are_exact) {
+  if (cells_are_exact && tissue.elements.size() <= tissue.cells.size()) return;
+  elements_ = tissue.elements;
+  chunks_ = {tissue, tissue.elements, tissue.element_cell};
+  batches_.resize(chunks_.batch_count());
+  parallel_for(places(), [&](std::size_t place) { fit(tissue, place); });
   take_target_volumes(tissue);
+}
+
+void Dilatation::fit(const Tissue& tissue, std::size_t place) {
+  plica::fit(
+      tissue, place, [](std::size_t e) { return static_cast<int>(e); }, batches_);
 }
 
 Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact,
@@ -176,7 +168,7 @@ Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are
     : Dilatation(tissue, in_all_elements(tissue, bulk_modulus, factors), cells_are_exact, kernels) {}
 
 VolumeStep Dilatation::kernel_step(const Step& step) const {
-  return {.batches = volumes_.batches(),
+  return {.batches = batches_.data(),
           .elements = elements_.size(),
           .positions = numbers(step.positions),
           .pressures = nullptr,
@@ -185,36 +177,19 @@ VolumeStep Dilatation::kernel_step(const Step& step) const {
 }
 
 double Dilatation::energy(const Step& step) const {
-  if (elements_.empty()) return 0;
-  return volumes_.chunks().sum_over_elements([&](std::size_t e) {
-    const double rest_volume = volumes_.rest_volume(e);
+  return chunks_.sum_over_elements([&](std::size_t e) {
+    const double rest_volume = batches_[e / batch_size].rest_volumes[e % batch_size];
     const double strain = hex_volume(gather(step.positions, elements_[e])) / rest_volume - 1;
     return bulk_moduli_[e] * rest_volume * strain * strain / 2;
   });
 }
 
-void Dilatation::add_forces(const Step& step, std::span<Vec3> forces) const {
-  if (elements_.empty()) return;
-  const VolumeStep at = kernel_step(step);
-  volumes_.chunks().for_batches(
-      [&](std::size_t first, std::size_t last) { volumes_.kernels().add_forces(at, first, last, numbers(forces)); });
-}
-
-void Dilatation::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
-  if (elements_.empty()) return;
-  const VolumeStep at = kernel_step(step);
-  volumes_.chunks().for_batches([&](std::size_t first, std::size_t last) {
-    volumes_.kernels().add_product(at, first, last, numbers(direction), numbers(product));
-  });
-}
-
 void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
-  if (elements_.empty()) return;
-  volumes_.chunks().for_elements(
+  chunks_.for_elements(
       [&](std::size_t e) {
         const auto& nodes = elements_[e];
         const HexPoints points = gather(step.positions, nodes);
-        const double rest_volume = volumes_.rest_volume(e);
+        const double rest_volume = batches_[e / batch_size].rest_volumes[e % batch_size];
         const double bulk_modulus = bulk_moduli_[e];
         const double pressure = bulk_modulus * (1 - hex_volume(points) / rest_volume);
         if (!step.semidefinite_tangent) add_volume_hessian(nodes, points, -pressure, tangent);
@@ -226,12 +201,6 @@ void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
       tangent.takes_apart());
 }
 
-NodeGroups Dilatation::node_groups(std::span<const double> /*internal*/) const {
-  NodeGroups groups;
-  for (const auto& nodes : elements_) groups.add(nodes);
-  return groups;
-}
-
 std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Division& division,
                                                 std::span<const Vec3>) const {
   return std::make_unique<Dilatation>(tissue, bulk_moduli_.after_division(tissue, division), cells_are_exact_,
@@ -240,7 +209,8 @@ std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Divi
 
 std::unique_ptr<Law> Dilatation::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
   auto law = std::make_unique<Dilatation>(*this);
-  law->volumes_.take_rest_shapes(tissue, elements);
+  if (elements_.empty()) return law;
+  for (const ElementId e : elements) law->fit(tissue, e.index());
   law->take_target_volumes(tissue);
   return law;
 }
@@ -248,7 +218,7 @@ std::unique_ptr<Law> Dilatation::grown(const Tissue& tissue, std::span<const Ele
 // The held volume of a growing daughter differs from its rest shape. Relative to the latter, each of its elements would
 // exert pressure, and the multiplier (the reported cell pressure) would only cancel that.
 void Dilatation::take_target_volumes(const Tissue& tissue) {
-  if (!cells_are_exact_ || elements_.empty()) return;
+  if (!cells_are_exact_) return;
   for (const Cell& cell : tissue.cells) {
     if (!cell.target_volume) continue;
     double at_rest = 0;
@@ -258,7 +228,9 @@ void Dilatation::take_target_volumes(const Tissue& tissue) {
     for (int e = 0; e < cell.element_count; ++e) {
       const std::size_t element = cell.first_element.index() + e;
       const double rest = hex_volume(tissue.element_rest_shape[element]);
-      volumes_.set_rest_volume(element, std::abs(part - 1) < 1e-12 ? rest : part * rest);
+      const std::size_t end = element + 1 == elements_.size() ? places() : element + 1;
+      for (std::size_t place = element; place < end; ++place)
+        batches_[place / batch_size].rest_volumes[place % batch_size] = std::abs(part - 1) < 1e-12 ? rest : part * rest;
     }
   }
 }

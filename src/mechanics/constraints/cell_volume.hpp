@@ -8,38 +8,10 @@
 #include "core/uninitialised.hpp"
 #include "mechanics/constraint.hpp"
 #include "mechanics/elasticity/of_elements.hpp"
-#include "mechanics/kernels/element_chunks.hpp"
-#include "mechanics/kernels/kernels.hpp"
-#include "mechanics/kernels/volume_kernels.hpp"
-#include "mechanics/law.hpp"
+#include "mechanics/kernels/batch_law.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
-
-/// Elements with volumes, in batches of eight, and the traversal of them.
-class VolumeElements {
- public:
-  /// Values per cell, or per element.
-  enum class Values { of_cells, of_elements };
-  VolumeElements(const Tissue& tissue, Kernels kernels, Values values = Values::of_cells);
-  void take_rest_shapes(const Tissue& tissue, std::span<const ElementId> elements);
-  void set_rest_volume(std::size_t element, double volume);
-
-  [[nodiscard]] const VolumeKernels& kernels() const;
-  [[nodiscard]] const ElementChunks& chunks() const { return chunks_; }
-  [[nodiscard]] const VolumeBatch* batches() const { return batches_.data(); }
-  [[nodiscard]] double rest_volume(std::size_t element) const {
-    return batches_[element / 8].rest_volumes[element % 8];
-  }
-
- private:
-  void fit(const Tissue& tissue, std::size_t element);
-
-  Kernels kernels_;
-  Values values_;
-  ElementChunks chunks_;
-  std::vector<VolumeBatch> batches_;
-};
 
 /// Volume constraints V_c(x) = target, one per cell. Multipliers are cell pressures, kPa, positive in compression.
 class CellVolumes final : public Constraint {
@@ -66,7 +38,7 @@ class CellVolumes final : public Constraint {
   [[nodiscard]] ConstraintParts parts() const override;
   void gradients(std::span<const Vec3> positions, std::span<Vec3> of_elements) const override;
   void for_parts(const std::function<void(std::size_t)>& body, bool shared) const override {
-    volumes_.chunks().for_elements(body, shared);
+    chunks_.for_elements(body, shared);
   }
   void add_forces(std::span<const Vec3> positions, std::span<const double> pressures,
                   std::span<Vec3> forces) const override;
@@ -76,7 +48,6 @@ class CellVolumes final : public Constraint {
                    TangentSink& tangent) const override;
   [[nodiscard]] double gradient_scale(std::size_t cell) const override;
   [[nodiscard]] double rounding(const Tissue& tissue, double position_rounding) const override;
-  [[nodiscard]] std::optional<CellId> cell_of(std::size_t cell) const override { return CellId(cell); }
   /// Return the constraints of the tissue after growth.
   [[nodiscard]] CellVolumes grown(const Tissue& tissue) const;
   /// Return the constraints after a division; daughters inherit pressures.
@@ -97,7 +68,9 @@ class CellVolumes final : public Constraint {
   std::vector<std::array<NodeId, 8>> elements_;
   std::vector<CellId> element_cell_;
   std::vector<double> targets_;  // cells; um^3
-  VolumeElements volumes_;
+  ElementChunks chunks_;
+  std::vector<VolumeBatch> batches_;
+  const VolumeKernels* kernels_;
   bool is_held_ = true;
 };
 
@@ -106,7 +79,7 @@ class CellVolumes final : public Constraint {
 /// omit. It is zero if a cell is one element of exact volume; in a cell of several elements it resists volume exchange
 /// between them; without the constraint it is the whole volume elasticity. The semidefinite tangent omits the pressure
 /// times d2V/dx2.
-class Dilatation final : public Law {
+class Dilatation final : public BatchLaw<Dilatation, 8> {
  public:
   /// Make the law; `bulk_moduli` per element, kPa. With `cells_are_exact` (cell volumes held) it is inactive while
   /// every cell is one element.
@@ -117,25 +90,22 @@ class Dilatation final : public Law {
              const std::vector<double>& factors = {}, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "dilatation"; }
-  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Dilatation>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
-  void add_forces(const Step& step, std::span<Vec3> forces) const override;
-  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
   [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 
  private:
+  friend BatchLaw;
+  static constexpr std::array tables = {&generic::volume_kernels, &avx2::volume_kernels, &avx512::volume_kernels};
+  void fit(const Tissue& tissue, std::size_t place);
   void take_target_volumes(const Tissue& tissue);
   [[nodiscard]] VolumeStep kernel_step(const Step& step) const;
 
-  std::vector<std::array<NodeId, 8>> elements_;  // empty while inactive
-  OfElements<double> bulk_moduli_;               // kPa
+  OfElements<double> bulk_moduli_;  // kPa
   bool cells_are_exact_;
-  Kernels kernels_;
-  VolumeElements volumes_;
+  std::vector<VolumeBatch> batches_;  // empty while inactive, as are the elements
 };
 
 }  // namespace plica

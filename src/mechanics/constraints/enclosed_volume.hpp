@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "mechanics/constraint.hpp"
+#include "tissue/tissue.hpp"
 
 namespace plica {
-
-struct Tissue;
 
 /// Constraint that holds the enclosed volume at its reference value; the multiplier is the inner pressure, kPa. The
 /// sheet must be closed, or a slice closed by planes across x or by mirror planes, in which its nodes must stay.
@@ -68,24 +67,51 @@ class EnclosedVolume final : public Constraint {
 class ElasticVolume final : public Law {
  public:
   /// Make the law with `bulk_modulus` K, kPa, and `rest_volume` V_0, um^3.
-  ElasticVolume(const Tissue& tissue, double bulk_modulus);
-  ElasticVolume(const Tissue& tissue, double bulk_modulus, double rest_volume);
+  ElasticVolume(const Tissue& tissue, double bulk_modulus) : volume_(tissue), bulk_modulus_(bulk_modulus) {}
+  ElasticVolume(const Tissue& tissue, double bulk_modulus, double rest_volume)
+      : volume_(tissue, rest_volume), bulk_modulus_(bulk_modulus) {}
 
   [[nodiscard]] std::string_view name() const override { return "enclosed volume"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<ElasticVolume>(*this); }
-  [[nodiscard]] double energy(const Step& step) const override;
-  void add_forces(const Step& step, std::span<Vec3> forces) const override;
-  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
-  void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
+  [[nodiscard]] double energy(const Step& step) const override {
+    const double strain = volume_ratio(step.positions) - 1;
+    return 0.5 * bulk_modulus_ * volume_.targets()[0] * strain * strain;
+  }
+  void add_forces(const Step& step, std::span<Vec3> forces) const override {
+    volume_.add_forces(step.positions, std::array{pressure(step.positions)}, forces);
+  }
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override {
+    Vectors gradient(step.positions.size(), Vec3::Zero());
+    volume_.add_forces(step.positions, std::array{1.0}, gradient);
+    double change = 0;
+    for (std::size_t n = 0; n < gradient.size(); ++n) change += gradient[n].dot(direction[n]);
+    const double stiffness = bulk_modulus_ / volume_.targets()[0] * change;
+    for (std::size_t n = 0; n < gradient.size(); ++n) product[n] += stiffness * gradient[n];
+    if (!step.semidefinite_tangent)
+      volume_.add_tangent_product(step.positions, std::array{pressure(step.positions)}, direction, product);
+  }
+  void add_tangent(const Step& step, TangentSink& tangent) const override {
+    if (!step.semidefinite_tangent) volume_.add_tangent(step.positions, std::array{pressure(step.positions)}, tangent);
+  }
+  [[nodiscard]] NodeGroups node_groups(std::span<const double> /*internal*/) const override {
+    return volume_.parts().nodes;
+  }
   /// Return a law without force for a part of the tissue, which encloses nothing.
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
-                                                    std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& /*division*/,
+                                                    std::span<const Vec3> /*positions*/) const override {
+    // Cutting cells makes more facets; fewer are left where only some cells are kept.
+    const bool is_part = tissue.basal_facets.size() < volume_.facet_count();
+    return std::make_unique<ElasticVolume>(tissue, is_part ? 0 : bulk_modulus_, volume_.targets()[0]);
+  }
 
   /// Return V/V_0.
-  [[nodiscard]] double volume_ratio(std::span<const Vec3> positions) const;
+  [[nodiscard]] double volume_ratio(std::span<const Vec3> positions) const {
+    return volume_.volume(positions) / volume_.targets()[0];
+  }
   /// Return the inner pressure, kPa.
-  [[nodiscard]] double pressure(std::span<const Vec3> positions) const;
+  [[nodiscard]] double pressure(std::span<const Vec3> positions) const {
+    return bulk_modulus_ * (1 - volume_ratio(positions));
+  }
 
  private:
   EnclosedVolume volume_;

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "core/box_grid.hpp"
-#include "mechanics/contact/closest_point.hpp"
 #include "mechanics/coulomb.hpp"
 
 namespace plica {
@@ -104,7 +103,7 @@ class NonconformingEdges {
   std::map<Edge, std::set<NodeId>> lying_;
 };
 
-bool have_common_node(std::span<const NodeId> some, std::span<const NodeId> others) {
+bool have_common_node(std::span<const KeptNode> some, std::span<const NodeId> others) {
   return std::ranges::any_of(some, [&](NodeId node) { return std::ranges::find(others, node) != others.end(); });
 }
 
@@ -141,7 +140,7 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
   // A node, or the mean of the nodes of an edge or a facet.
   const auto add_point = [&](const std::array<NodeId, 4>& nodes, int count, double area) {
     if (area == 0) return;
-    SurfacePlace place{nodes, {}, count};
+    SurfacePlace place(nodes, count);
     for (int i = 0; i < count; ++i) place.weights[i] = 1.0 / count;
     points_.push_back({place, area});
     std::set<std::size_t> around = count == 1 ? nonconforming.across(nodes[0]) : std::set<std::size_t>();
@@ -202,8 +201,8 @@ bool SelfContact::is_nearest_about(const SurfacePlace& q, const Vec3& place, con
   return std::ranges::none_of(surface.grid.near(place), [&](std::size_t t) {
     const auto& facet = facets_[t / 4];
     const auto& [a, b, c] = surface.triangles[t].corners;
-    for (int k = 0; k < q.count; ++k)
-      if (q.weights[k] > 0 && std::ranges::find(facet, q.nodes[k]) != facet.end())
+    for (int k = 0; k < q.count(); ++k)
+      if (q.weights[k] > 0 && std::ranges::find(facet, NodeId(q.nodes[k])) != facet.end())
         return closest_on_triangle(place, a, b, c).squared_distance < limit;
     return false;
   });
@@ -224,7 +223,7 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> kn
     const auto& [a, b, c] = triangles[t].corners;
     const auto [of_corners, distance2] = closest_on_triangle(place, a, b, c);
     if (distance2 >= nearest2) continue;
-    SurfacePlace q{facets_[t / 4], {}, 4};
+    SurfacePlace q(facets_[t / 4], 4);
     q.weights.fill(of_corners[2] / 4);
     q.weights[t % 4] += of_corners[0];
     q.weights[(t + 1) % 4] += of_corners[1];
@@ -232,7 +231,7 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> kn
     for (int k = 0; k < 4; ++k) outside += q.weights[k] * normals[q.nodes[k].index()].normalized();
     if (outside.norm() < 0.1) continue;  // a sharp edge has no side
     // Along the shortest way: then nothing comes nearer by sliding.
-    Pair found{p, Pair::no_segment, point, q, outside.normalized(), points_[p].area};
+    Pair found{static_cast<double>(p), Pair::no_segment, point, q, outside.normalized(), points_[p].area};
     const Vec3 apart = found.apart(x);
     if (std::ranges::all_of(of_corners, [](double weight) { return weight > 0; }))
       found.normal = triangles[t].area.normalized();
@@ -259,7 +258,7 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> kn
 std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<const double> known) const {
   const Vectors of_whole = mirror_.is_used() ? mirror_.whole(positions) : Vectors();
   const Surface surface(*this, mirror_.is_used() ? std::span<const Vec3>(of_whole) : positions);
-  const std::vector<Pair> before = pairs_of(known);
+  const std::span<const Pair> before = pairs_of(known);
   auto last = before.begin();  // that of the point or of one after it; then those of edges
   std::vector<Pair> pairs;
   for (std::size_t p = 0; p < points_.size(); ++p) {
@@ -293,18 +292,16 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<
   return pairs;
 }
 
-std::vector<Pair> SelfContact::pairs_of(std::span<const double> internal) {
-  std::vector<Pair> pairs;
-  for (std::size_t at = 1; at < internal.size(); at += numbers_of_pair)
-    pairs.push_back(unpacked(internal.subspan(at, numbers_of_pair)));
-  return pairs;
+std::span<const Pair> SelfContact::pairs_of(std::span<const double> internal) {
+  if (internal.empty()) return {};
+  return {reinterpret_cast<const Pair*>(internal.data() + 1), (internal.size() - 1) / numbers_of_pair};
 }
 
 // An internal state is the revision of the pattern, then the numbers of pairs.
 std::vector<double> SelfContact::packed(const std::vector<Pair>& pairs, std::span<const double> before) const {
   std::vector<double> numbers = {static_cast<double>(pattern_revision(before))};
-  numbers.reserve(1 + numbers_of_pair * pairs.size());
-  for (const Pair& pair : pairs) pack(pair, numbers);
+  const auto* of_pairs = reinterpret_cast<const double*>(pairs.data());
+  numbers.insert(numbers.end(), of_pairs, of_pairs + numbers_of_pair * pairs.size());
   NodeGroups joined, joined_before;
   add_touching(numbers, joined);
   add_touching(before, joined_before);
@@ -323,8 +320,7 @@ std::vector<double> SelfContact::next_internal(const Step& step) const {
 // Calls take(pair, how far it is inside the distance) for every pair that is pressed.
 template <class Take>
 void SelfContact::for_pressed(const Step& step, const Take& take) const {
-  for (std::size_t at = 1; at < step.internal.size(); at += numbers_of_pair) {
-    const Pair pair = unpacked(step.internal.subspan(at, numbers_of_pair));
+  for (const Pair& pair : pairs_of(step.internal)) {
     const double inside = pair.distance - pair.gap(MirroredVectors{mirror_, step.positions});
     if (inside > 0) take(pair, inside);
   }
@@ -335,8 +331,7 @@ void SelfContact::for_pressed(const Step& step, const Take& take) const {
 template <class Take>
 void SelfContact::for_rubbing(const Step& step, const Take& take) const {
   if (rule_.friction == 0) return;
-  for (std::size_t at = 1; at < step.internal.size(); at += numbers_of_pair) {
-    const Pair pair = unpacked(step.internal.subspan(at, numbers_of_pair));
+  for (const Pair& pair : pairs_of(step.internal)) {
     const double inside = pair.distance - pair.first_gap;
     if (inside <= 0) continue;
     const auto apart = [&](std::span<const Vec3> x) { return pair.apart(MirroredVectors{mirror_, x}); };
@@ -357,7 +352,7 @@ double SelfContact::energy(const Step& step) const {
 
 void SelfContact::add_push(const Pair& pair, const Vec3& push, std::span<Vec3> forces) const {
   const auto add = [&](const SurfacePlace& place, double sign) {
-    for (int i = 0; i < place.count; ++i) {
+    for (int i = 0; i < place.count(); ++i) {
       const auto [node, signs] = mirror_.image(place.nodes[i]);
       forces[node.index()] += sign * place.weights[i] * signs.cwiseProduct(push);
     }
@@ -401,12 +396,13 @@ void SelfContact::add_tangent_product(const Step& step, std::span<const Vec3> di
 
 void SelfContact::add_tangent(const Step& step, TangentSink& tangent) const {
   const auto add = [&](const Pair& pair, const Mat3& stiffness) {
-    const auto is_of_p = [&](int i) { return i < pair.p.count; };
-    const auto node = [&](int i) { return is_of_p(i) ? pair.p.nodes[i] : pair.q.nodes[i - pair.p.count]; };
-    const auto weight = [&](int i) { return is_of_p(i) ? pair.p.weights[i] : -pair.q.weights[i - pair.p.count]; };
+    const int of_p = pair.p.count(), of_both = of_p + pair.q.count();
+    const auto is_of_p = [&](int i) { return i < of_p; };
+    const auto node = [&](int i) { return is_of_p(i) ? pair.p.nodes[i] : pair.q.nodes[i - of_p]; };
+    const auto weight = [&](int i) { return is_of_p(i) ? pair.p.weights[i] : -pair.q.weights[i - of_p]; };
     // One that has come from so far that its pattern leaves it out has what couples nodes of one side.
     const bool whole = may_touch(pair);
-    for (int i = 0; i < pair.p.count + pair.q.count; ++i)
+    for (int i = 0; i < of_both; ++i)
       for (int j = 0; j <= i; ++j)
         if (whole || is_of_p(i) == is_of_p(j)) {
           const auto [a, a_signs] = mirror_.image(node(i));
@@ -436,7 +432,7 @@ double SelfContact::rounding(const Step& step, double position_rounding) const {
 NodeGroups SelfContact::node_groups(std::span<const double> internal) const {
   NodeGroups groups;
   for (const Point& point : points_)
-    if (point.place.count == 4) add_group(point.place.nodes, groups);
+    if (point.place.count() == 4) add_group(point.place.nodes, groups);
   add_touching(internal, groups);
   return groups;
 }
@@ -444,14 +440,14 @@ NodeGroups SelfContact::node_groups(std::span<const double> internal) const {
 void SelfContact::add_touching(std::span<const double> internal, NodeGroups& groups) const {
   for (const Pair& pair : pairs_of(internal)) {
     if (!may_touch(pair)) continue;
-    std::vector<NodeId> nodes(pair.p.all_nodes().begin(), pair.p.all_nodes().end());
+    std::vector<KeptNode> nodes(pair.p.all_nodes().begin(), pair.p.all_nodes().end());
     nodes.insert(nodes.end(), pair.q.all_nodes().begin(), pair.q.all_nodes().end());
     add_group(nodes, groups);
   }
 }
 
 // As the side numbers them, each once.
-void SelfContact::add_group(std::span<const NodeId> of_whole, NodeGroups& groups) const {
+void SelfContact::add_group(std::span<const KeptNode> of_whole, NodeGroups& groups) const {
   std::vector<NodeId> nodes;
   for (const NodeId node : of_whole)
     if (const NodeId own = mirror_.image(node).node; std::ranges::find(nodes, own) == nodes.end()) nodes.push_back(own);

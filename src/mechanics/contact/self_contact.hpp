@@ -75,8 +75,8 @@ class SelfContact final : public Law {
   /// Find pairs in the order of points, then of edges. `known`: internal state of the step that ends at these
   /// positions.
   [[nodiscard]] std::vector<Pair> pairs(std::span<const Vec3> positions, std::span<const double> known = {}) const;
-  /// Return the pairs of an internal state.
-  [[nodiscard]] static std::vector<Pair> pairs_of(std::span<const double> internal);
+  /// Return the pairs of an internal state, a view of it.
+  [[nodiscard]] static std::span<const Pair> pairs_of(std::span<const double> internal);
   [[nodiscard]] const std::vector<Point>& points() const { return points_; }
   [[nodiscard]] CellSide side() const { return rule_.side; }
 
@@ -91,7 +91,7 @@ class SelfContact final : public Law {
   [[nodiscard]] bool may_touch(const Pair& pair) const { return pair.first_gap < 2 * rule_.distance; }
   /// Add the nodes of each pair that may touch.
   void add_touching(std::span<const double> internal, NodeGroups& groups) const;
-  void add_group(std::span<const NodeId> of_whole, NodeGroups& groups) const;
+  void add_group(std::span<const KeptNode> of_whole, NodeGroups& groups) const;
   /// Add a push to the nodes of p, and its opposite to those of q.
   void add_push(const Pair& pair, const Vec3& push, std::span<Vec3> forces) const;
   [[nodiscard]] std::vector<double> packed(const std::vector<Pair>& pairs, std::span<const double> before) const;

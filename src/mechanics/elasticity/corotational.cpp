@@ -31,23 +31,21 @@ void nearest_rotation(const double (&F)[9], double (&R)[9]) {
 
 Corotational::Corotational(const Tissue& tissue, std::vector<ElasticModuli> moduli, double shear_viscosity,
                            Kernels kernels)
-    : moduli_(tissue, std::move(moduli)),
+    : BatchLaw(tissue.elements, {tissue, tissue.elements}, kernels),
+      moduli_(tissue, std::move(moduli)),
       shear_viscosity_(shear_viscosity),
-      kernels_(kernels),
-      chunks_(tissue, tissue.elements),
       batches_(chunks_.batch_count()),
       viscous_batches_(shear_viscosity > 0 ? chunks_.batch_count() : 0) {
   require_upright_rest_shapes(tissue);
   parallel_for(
-      batches_.size() * batch_size, [&](std::size_t place) { fit(tissue, place); }, long_bodies);
+      places(), [&](std::size_t place) { fit(tissue, place); }, long_bodies);
 }
 
 void Corotational::fit(const Tissue& tissue, std::size_t place) {
-  // Places after the last element repeat it: kernels calculate there too, and it must not be slow or fail.
-  const std::size_t e = std::min(place, chunks_.element_count() - 1);
+  const std::size_t e = std::min(place, elements_.size() - 1);
   const int lane = static_cast<int>(place % batch_size);
   CorotationalBatch& batch = batches_[place / batch_size];
-  for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * tissue.elements[e][i].number();
+  for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * elements_[e][i].number();
 
   const HexPoints& rest = tissue.element_rest_shape[e];
   const std::array<Vec3, 8> gradients = mean_gradients(rest);
@@ -74,20 +72,10 @@ void Corotational::fit(const Tissue& tissue, std::size_t place) {
   put_stiffness(hourglass_stiffness(rest, viscous_moduli(shear_viscosity_), modes), lane, viscous.stiffness);
 }
 
-std::unique_ptr<Law> Corotational::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
-  auto law = std::make_unique<Corotational>(*this);
-  for (const ElementId e : elements) law->fit(tissue, e.index());
-  return law;
-}
-
-const CorotationalKernels& Corotational::kernels() const {
-  return kernels_for(kernels_, generic::corotational_kernels, avx2::corotational_kernels, avx512::corotational_kernels);
-}
-
 CorotationalStep Corotational::kernel_step(const Step& step) const {
   return {.batches = batches_.data(),
           .viscous_batches = viscous_batches_.empty() ? nullptr : viscous_batches_.data(),
-          .elements = chunks_.element_count(),
+          .elements = elements_.size(),
           .positions = numbers(step.positions),
           .previous_positions = numbers(step.previous_positions),
           .earlier_positions = numbers(step.earlier_positions),
@@ -102,59 +90,10 @@ EnergyFlow Corotational::energy_flow(const MadeStep& made) const {
 
 double Corotational::energy(const Step& step) const {
   const CorotationalStep of_kernels = kernel_step(step);
-  std::vector<double> energies(batches_.size() * batch_size);
+  std::vector<double> energies(places());
   chunks_.for_batches(
       [&](std::size_t first, std::size_t last) { kernels().write_energies(of_kernels, first, last, energies.data()); });
   return chunks_.sum_over_elements([&](std::size_t e) { return energies[e]; });
-}
-
-void Corotational::add_forces(const Step& step, std::span<Vec3> forces) const {
-  const CorotationalStep at = kernel_step(step);
-  chunks_.for_batches(
-      [&](std::size_t first, std::size_t last) { kernels().add_forces(at, first, last, numbers(forces)); });
-}
-
-void Corotational::add_tangent_product(const Step& step, std::span<const Vec3> direction,
-                                       std::span<Vec3> product) const {
-  const CorotationalStep at = kernel_step(step);
-  chunks_.for_batches([&](std::size_t first, std::size_t last) {
-    kernels().add_product(at, first, last, numbers(direction), numbers(product));
-  });
-}
-
-void Corotational::add_tangent(const Step& step, TangentSink& tangent) const {
-  const CorotationalStep at = kernel_step(step);
-  const auto add_batch = [&](std::size_t batch) {
-    HexahedronBlocks of_batch;
-    kernels().write_blocks(at, batch, of_batch);
-    const std::size_t first = batch * batch_size;
-    for (std::size_t e = first; e < std::min(first + batch_size, chunks_.element_count()); ++e)
-      for (int i = 0, pair = 0; i < 8; ++i)
-        for (int j = 0; j <= i; ++j, ++pair) {
-          Mat3 block;
-          for (int k = 0; k < 9; ++k) block.data()[k] = of_batch.blocks[pair][k][e - first];
-          tangent.add_block(node(e, i), node(e, j), block);
-        }
-  };
-  chunks_.for_batches(
-      [&](std::size_t first, std::size_t last) {
-        for (std::size_t batch = first; batch < last; ++batch) add_batch(batch);
-      },
-      tangent.takes_apart());
-}
-
-NodeId Corotational::node(std::size_t e, int corner) const {
-  return NodeId(batches_[e / batch_size].nodes[corner][e % batch_size] / 3);
-}
-
-NodeGroups Corotational::node_groups(std::span<const double> /*internal*/) const {
-  NodeGroups groups;
-  for (std::size_t e = 0; e < chunks_.element_count(); ++e) {
-    std::array<NodeId, 8> nodes;
-    for (int i = 0; i < 8; ++i) nodes[i] = node(e, i);
-    groups.add(nodes);
-  }
-  return groups;
 }
 
 std::unique_ptr<Law> Corotational::after_division(const Tissue& tissue, const Division& division,

@@ -12,15 +12,12 @@
 
 #include "mechanics/elasticity/hexahedron_stiffness.hpp"
 #include "mechanics/elasticity/of_elements.hpp"
-#include "mechanics/kernels/corotational_kernels.hpp"
-#include "mechanics/kernels/element_chunks.hpp"
-#include "mechanics/kernels/kernels.hpp"
-#include "mechanics/law.hpp"
+#include "mechanics/kernels/batch_law.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
 
-class Corotational final : public Law {
+class Corotational final : public BatchLaw<Corotational, 8> {
  public:
   /// Make the law; `moduli` per element, `shear_viscosity` in nN s/um^2 (0: none), rest shapes of the elements of the
   /// tissue. Throws std::domain_error if a rest shape is inverted.
@@ -32,29 +29,24 @@ class Corotational final : public Law {
       : Corotational(tissue, in_all_elements(tissue, moduli, factors), shear_viscosity, kernels) {}
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
-  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Corotational>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
   [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override;
-  void add_forces(const Step& step, std::span<Vec3> forces) const override;
-  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
-  void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
-  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
+
+  [[nodiscard]] bool overbends() const override { return true; }
 
   /// Return the input of the kernels.
   [[nodiscard]] CorotationalStep kernel_step(const Step& step) const;
 
  private:
+  friend BatchLaw;
+  static constexpr std::array tables = {&generic::corotational_kernels, &avx2::corotational_kernels,
+                                        &avx512::corotational_kernels};
   void fit(const Tissue& tissue, std::size_t element);  // computes element data from the rest shape
-  [[nodiscard]] NodeId node(std::size_t element, int corner) const;
-  [[nodiscard]] const CorotationalKernels& kernels() const;
 
   OfElements<ElasticModuli> moduli_;
   double shear_viscosity_;
-  Kernels kernels_;
-  ElementChunks chunks_;
   std::vector<CorotationalBatch> batches_;     // eight elements each
   std::vector<ViscousBatch> viscous_batches_;  // viscous counterpart
 };

@@ -67,21 +67,18 @@ NeoHookean::NeoHookean(const Tissue& tissue, const std::vector<double>& shear_mo
     : NeoHookean(tissue, materials_of(tissue, shear_moduli, relaxation_s), kernels) {}
 
 NeoHookean::NeoHookean(const Tissue& tissue, std::vector<NeoHookeanMaterial> materials, Kernels kernels)
-    : materials_(tissue, materials),
+    : BatchLaw(tissue.elements, {tissue, tissue.elements}, kernels),
+      materials_(tissue, materials),
       flows_(std::ranges::any_of(materials, [](const NeoHookeanMaterial& one) { return one.relaxation_s > 0; })),
-      kernels_(kernels),
-      elements_(tissue.elements),
       element_cell_(tissue.element_cell),
       rest_(tissue.element_rest_shape),
-      chunks_(tissue, tissue.elements),
       batches_(chunks_.batch_count()),
-      flow_batches_(flows() ? chunks_.batch_count() : 0) {
+      flow_batches_(flows_ ? chunks_.batch_count() : 0) {
   require_upright_rest_shapes(tissue);
-  parallel_for(batches_.size() * batch_size, [&](std::size_t place) { fit(tissue, place); });
+  parallel_for(places(), [&](std::size_t place) { fit(tissue, place); });
 }
 
 void NeoHookean::fit(const Tissue& tissue, std::size_t place) {
-  // Places after the last element repeat it: kernels calculate there too.
   const std::size_t e = std::min(place, elements_.size() - 1), lane = place % batch_size;
   if (place == e) rest_[e] = tissue.element_rest_shape[e];
   NeoHookeanBatch& batch = batches_[place / batch_size];
@@ -91,30 +88,20 @@ void NeoHookean::fit(const Tissue& tissue, std::size_t place) {
     const Mat3 D0 = gauss_jacobian(tissue.element_rest_shape[e], g);
     batch.weights[g][lane] = shear_modulus * D0.determinant();
     put((D0.transpose() * D0).inverse(), &batch.metrics[g][0][lane]);
-    if (!flows()) continue;
+    if (!flows_) continue;
     for (int k = 0; k < 9; ++k) flow_batches_[place / batch_size].frames[g][k][lane] = D0.data()[k];
   }
-  if (flows()) flow_batches_[place / batch_size].rates[lane] = relaxation_s > 0 ? 1 / relaxation_s : 0;
-}
-
-std::unique_ptr<Law> NeoHookean::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
-  auto law = std::make_unique<NeoHookean>(*this);
-  for (const ElementId e : elements) law->fit(tissue, e.index());
-  return law;
-}
-
-const NeoHookeanKernels& NeoHookean::kernels() const {
-  return kernels_for(kernels_, generic::neo_hookean_kernels, avx2::neo_hookean_kernels, avx512::neo_hookean_kernels);
+  if (flows_) flow_batches_[place / batch_size].rates[lane] = relaxation_s > 0 ? 1 / relaxation_s : 0;
 }
 
 NeoHookeanStep NeoHookean::kernel_step(const Step& step) const {
   return {.batches = batches_.data(),
-          .flows = flows() ? flow_batches_.data() : nullptr,
+          .flows = flows_ ? flow_batches_.data() : nullptr,
           .elements = elements_.size(),
           .positions = numbers(step.positions),
           .semidefinite_tangent = step.semidefinite_tangent,
           .flowed = step.internal.data(),
-          .flowed_earlier = flows() ? step.internal.data() + batches_.size() * numbers_a_batch : nullptr,
+          .flowed_earlier = flows_ ? step.internal.data() + batches_.size() * numbers_a_batch : nullptr,
           .ahead = step.ahead,
           .rate_s = step.rate_s};
 }
@@ -138,7 +125,7 @@ double NeoHookean::energy(const Step& step) const {
       const Mat3 F = deformation_gradient(points, rest_[e], g), C = F.transpose() * F;
       const double J = F.determinant();
       if (!(J > 0)) return std::numeric_limits<double>::infinity();
-      const double r = flows() ? step.rate_s * flow_batches_[e / batch_size].rates[e % batch_size] : 0;
+      const double r = flows_ ? step.rate_s * flow_batches_[e / batch_size].rates[e % batch_size] : 0;
       double stored = 0.5 * C.trace();
       if (r > 0) {
         // 3 det(C_b + r C)^(1/3)/2 r, minus terms independent of C.
@@ -155,7 +142,7 @@ double NeoHookean::energy(const Step& step) const {
 // Work not stored in the relaxed rest shapes is dissipated.
 EnergyFlow NeoHookean::energy_flow(const MadeStep& made) const {
   EnergyFlow flow = Law::energy_flow(made);
-  if (!flows()) return flow;
+  if (!flows_) return flow;
   Vectors mean(made.end.positions.size(), Vec3::Zero());
   add_forces(made.begin, mean);
   add_forces(made.end, mean);
@@ -165,48 +152,8 @@ EnergyFlow NeoHookean::energy_flow(const MadeStep& made) const {
   return flow;
 }
 
-void NeoHookean::add_forces(const Step& step, std::span<Vec3> forces) const {
-  const NeoHookeanStep at = kernel_step(step);
-  chunks_.for_batches(
-      [&](std::size_t first, std::size_t last) { kernels().add_forces(at, first, last, numbers(forces)); });
-}
-
-void NeoHookean::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
-  const NeoHookeanStep at = kernel_step(step);
-  chunks_.for_batches([&](std::size_t first, std::size_t last) {
-    kernels().add_product(at, first, last, numbers(direction), numbers(product));
-  });
-}
-
-void NeoHookean::add_tangent(const Step& step, TangentSink& tangent) const {
-  const NeoHookeanStep at = kernel_step(step);
-  const auto add_batch = [&](std::size_t batch) {
-    HexahedronBlocks of_batch;
-    kernels().write_blocks(at, batch, of_batch);
-    const std::size_t first = batch * batch_size;
-    for (std::size_t e = first; e < std::min(first + batch_size, elements_.size()); ++e)
-      for (int i = 0, pair = 0; i < 8; ++i)
-        for (int j = 0; j <= i; ++j, ++pair) {
-          Mat3 block;
-          for (int k = 0; k < 9; ++k) block.data()[k] = of_batch.blocks[pair][k][e - first];
-          tangent.add_block(elements_[e][i], elements_[e][j], block);
-        }
-  };
-  chunks_.for_batches(
-      [&](std::size_t first, std::size_t last) {
-        for (std::size_t batch = first; batch < last; ++batch) add_batch(batch);
-      },
-      tangent.takes_apart());
-}
-
-NodeGroups NeoHookean::node_groups(std::span<const double> /*internal*/) const {
-  NodeGroups groups;
-  for (const auto& nodes : elements_) groups.add(nodes);
-  return groups;
-}
-
 std::vector<double> NeoHookean::first_internal(const Tissue& /*tissue*/) const {
-  if (!flows()) return {};
+  if (!flows_) return {};
   std::vector<double> internal(2 * batches_.size() * numbers_a_batch);
   for (std::size_t first = 0; first < internal.size(); first += 6 * batch_size)
     for (std::size_t lane = 0; lane < batch_size; ++lane) put(Mat3::Identity(), &internal[first + lane]);
@@ -214,7 +161,7 @@ std::vector<double> NeoHookean::first_internal(const Tissue& /*tissue*/) const {
 }
 
 std::vector<double> NeoHookean::next_internal(const Step& step) const {
-  if (!flows()) return {};
+  if (!flows_) return {};
   const std::size_t size = batches_.size() * numbers_a_batch;
   std::vector<double> internal(2 * size);
   std::copy_n(step.internal.begin(), size, internal.begin() + static_cast<std::ptrdiff_t>(size));
@@ -231,7 +178,7 @@ std::unique_ptr<Law> NeoHookean::after_division(const Tissue& tissue, const Divi
 
 std::vector<double> NeoHookean::internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                         const Division& division) const {
-  if (!flows()) return {};
+  if (!flows_) return {};
   std::vector<std::vector<std::size_t>> of_cell(std::ranges::max(element_cell_).index() + 1);  // elements before
   for (std::size_t e = 0; e < elements_.size(); ++e) of_cell[element_cell_[e].index()].push_back(e);
   const auto where = [](const HexPoints& rest, int g) {

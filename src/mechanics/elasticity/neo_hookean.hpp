@@ -8,10 +8,7 @@
 #pragma once
 
 #include "mechanics/elasticity/of_elements.hpp"
-#include "mechanics/kernels/element_chunks.hpp"
-#include "mechanics/kernels/kernels.hpp"
-#include "mechanics/kernels/neo_hookean_kernels.hpp"
-#include "mechanics/law.hpp"
+#include "mechanics/kernels/batch_law.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -24,7 +21,7 @@ struct NeoHookeanMaterial {
 
 /// Neo-Hookean law. Its semidefinite tangent keeps the relaxed rest shape fixed, and is stiffened along rotations of
 /// Gauss points under pressure, just enough to prevent negative stiffness.
-class NeoHookean final : public Law {
+class NeoHookean final : public BatchLaw<NeoHookean, 8> {
  public:
   /// Make the law; `materials` per element, rest shapes of the elements of the tissue. Throws std::domain_error if one
   /// is inverted.
@@ -34,13 +31,8 @@ class NeoHookean final : public Law {
              const std::vector<double>& relaxation_s = {}, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
-  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<NeoHookean>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
   [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override;
-  void add_forces(const Step& step, std::span<Vec3> forces) const override;
-  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
-  void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
 
   /// Return, if cells relax, C_p at the beginning of this step, then of the previous step, in the layout of kernels.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
@@ -52,25 +44,22 @@ class NeoHookean final : public Law {
                                                     std::span<const Vec3> positions) const override;
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                             const Division& division) const override;
-  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 
   /// Return C_p of a Gauss point in an internal state.
   [[nodiscard]] Mat3 flowed(std::span<const double> internal, ElementId element, int gauss_point) const;
 
  private:
+  friend BatchLaw;
+  static constexpr std::array tables = {&generic::neo_hookean_kernels, &avx2::neo_hookean_kernels,
+                                        &avx512::neo_hookean_kernels};
   void fit(const Tissue& tissue, std::size_t element);  // computes element data from the rest shape
-  [[nodiscard]] bool flows() const { return flows_; }
   [[nodiscard]] Mat3 flowed_before(std::size_t element, int gauss_point, const Step& step) const;
   [[nodiscard]] NeoHookeanStep kernel_step(const Step& step) const;
-  [[nodiscard]] const NeoHookeanKernels& kernels() const;
 
   OfElements<NeoHookeanMaterial> materials_;
   bool flows_;  // whether any element relaxes
-  Kernels kernels_;
-  std::vector<std::array<NodeId, 8>> elements_;
   std::vector<CellId> element_cell_;
   std::vector<HexPoints> rest_;  // elements; um
-  ElementChunks chunks_;
   std::vector<NeoHookeanBatch> batches_;
   std::vector<FlowBatch> flow_batches_;  // if cells relax
 };

@@ -67,12 +67,6 @@ inline Mat half_turning_stiffness(const Turned& x, Lanes shear, const Mat (&H)[4
   return G * (full(symmetric_part(C)) * (broadcast(0.5) * G));
 }
 
-inline void store(const Mat& block, int lane, double (&numbers)[9][batch_size]) {
-  const Lanes values[9] = {block.x.x, block.x.y, block.x.z, block.y.x, block.y.y,
-                           block.y.z, block.z.x, block.z.y, block.z.z};
-  for (int k = 0; k < 9; ++k) *reinterpret_cast<Lanes*>(numbers[k] + lane) = values[k];
-}
-
 [[gnu::flatten]] void write_lanes(const Elements& e, const CorotationalStep& step, HexahedronBlocks& blocks) {
   const bool exact = !step.semidefinite_tangent;
   const Deformation now = deformation(e, step.positions);

@@ -10,12 +10,9 @@ namespace {
 // Calls body(elements, lanes that count) for every register's worth of the batches.
 template <class Body>
 inline void for_elements(const CorotationalStep& step, std::size_t first, std::size_t last, const Body& body) {
-  for (std::size_t b = first; b < last; ++b) {
-    const int count = count_in_batch(step.elements, b);
-    const ViscousBatch* viscous_batch = step.viscous_batches ? step.viscous_batches + b : nullptr;
-    for (int lane = 0; lane < count; lane += width)
-      body(Elements{step.batches[b], viscous_batch, step.rate, lane}, count - lane < width ? count - lane : width);
-  }
+  for_registers(step.elements, first, last, [&](std::size_t b, int lane, int count) {
+    body(Elements{step.batches[b], step.viscous_batches ? step.viscous_batches + b : nullptr, step.rate, lane}, count);
+  });
 }
 
 // Nodal contributions for gradients P by F and r by hourglasses in the frame.
@@ -169,6 +166,6 @@ void add_product(const CorotationalStep& step, std::size_t first, std::size_t la
 
 }  // namespace
 
-const CorotationalKernels corotational_kernels = {write_energies, add_forces, add_product, write_blocks};
+const CorotationalKernels corotational_kernels = {{add_forces, add_product, write_blocks}, write_energies};
 
 }  // namespace plica::PLICA_KERNELS

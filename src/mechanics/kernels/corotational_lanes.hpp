@@ -3,8 +3,8 @@
 // and q the responses to S - I and h.
 #pragma once
 
-#include "mechanics/kernels/corotational_kernels.hpp"
 #include "mechanics/kernels/hexahedron_lanes.hpp"
+#include "mechanics/kernels/tables.hpp"
 
 namespace plica::PLICA_KERNELS {
 

@@ -1,8 +1,7 @@
 // Letters as in docs/theory/cortex.md, but a and b for dx/ds and dx/dt: at a Gauss point (s, t) of the bilinear face, n
 // is their product and |n| the area that the point stands for. a depends on t alone, b on s alone.
-#include "mechanics/kernels/face_kernels.hpp"
-
 #include "mechanics/kernels/hexahedron_lanes.hpp"
+#include "mechanics/kernels/tables.hpp"
 
 namespace plica::PLICA_KERNELS {
 namespace {
@@ -59,12 +58,9 @@ struct Faces {
 
 template <class Body>
 inline void for_faces(const FaceStep& step, std::size_t first, std::size_t last, const Body& body) {
-  for (std::size_t b = first; b < last; ++b) {
-    const int count = count_in_batch(step.faces, b);
-    for (int lane = 0; lane < count; lane += width)
-      body(Faces{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane,
-                 count - lane < width ? count - lane : width});
-  }
+  for_registers(step.faces, first, last, [&](std::size_t b, int lane, int count) {
+    body(Faces{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane, count});
+  });
 }
 
 // n, and what follows from the area phi(|n|) that it stands for: dphi/dn, and d2phi/dn2 = p (I - q u u^T).
@@ -178,7 +174,7 @@ inline Slants product(const Slants& x, const Normal (&n)[2][2], const Slants& g,
 }
 
 // Column by column: the tangent times unit vectors at a corner.
-[[gnu::flatten]] void write_blocks(const FaceStep& step, std::size_t batch, FaceBlocks& blocks) {
+[[gnu::flatten]] void write_blocks(const FaceStep& step, std::size_t batch, TangentBlocks<4>& blocks) {
   for (int lane = 0; lane < batch_size; lane += width) {
     const Faces faces{step.batches[batch], batch * batch_size + static_cast<std::size_t>(lane), lane, width};
     const Slants x = faces.slants_of(step.positions);
@@ -202,6 +198,6 @@ inline Slants product(const Slants& x, const Normal (&n)[2][2], const Slants& g,
 
 }  // namespace
 
-const FaceKernels face_kernels = {write_areas, add_forces, add_product, write_blocks};
+const FaceKernels face_kernels = {{add_forces, add_product, write_blocks}, write_areas};
 
 }  // namespace plica::PLICA_KERNELS

@@ -20,6 +20,23 @@ inline int count_in_batch(std::size_t elements, std::size_t batch) {
   return left < batch_size ? static_cast<int>(left) : batch_size;
 }
 
+/// Call body(batch, lane, count) for every register's worth of elements of batches `first` to `last` - 1, from `lane`
+/// on, of which the first `count` count.
+template <class Body>
+inline void for_registers(std::size_t elements, std::size_t first, std::size_t last, const Body& body) {
+  for (std::size_t b = first; b < last; ++b) {
+    const int count = count_in_batch(elements, b);
+    for (int lane = 0; lane < count; lane += width) body(b, lane, count - lane < width ? count - lane : width);
+  }
+}
+
+/// Write a block of tangents, by columns.
+inline void store(const Mat& block, int lane, double (&numbers)[9][batch_size]) {
+  const Lanes values[9] = {block.x.x, block.x.y, block.x.z, block.y.x, block.y.y,
+                           block.y.z, block.z.x, block.z.y, block.z.z};
+  for (int k = 0; k < 9; ++k) *reinterpret_cast<Lanes*>(numbers[k] + lane) = values[k];
+}
+
 /// Gather vectors of nodes: reads rows x y z and transposes.
 inline Vec gather(const double* vectors, const int* at) {
 #if PLICA_LANES == 8

@@ -1,9 +1,8 @@
 // Letters as in docs/theory/neo_hookean.md. At a Gauss point D = dx/d(reference), K = cof D and J = det D; B is the
 // inverse of the metric of the rest shape, flowed or not, in reference coordinates: tr(C C_p^-1) = tr(D B D^T). The
 // energy's gradient by D is w (D B - K/J). A letter with a d: its change along a direction.
-#include "mechanics/kernels/neo_hookean_kernels.hpp"
-
 #include "mechanics/kernels/hexahedron_lanes.hpp"
+#include "mechanics/kernels/tables.hpp"
 
 namespace plica::PLICA_KERNELS {
 namespace {
@@ -18,12 +17,9 @@ struct Elements {
 
 template <class Body>
 inline void for_elements(const NeoHookeanStep& step, std::size_t first, std::size_t last, const Body& body) {
-  for (std::size_t b = first; b < last; ++b) {
-    const int count = count_in_batch(step.elements, b);
-    for (int lane = 0; lane < count; lane += width)
-      body(Elements{step.batches[b], step.flows ? step.flows + b : nullptr, b, lane},
-           count - lane < width ? count - lane : width);
-  }
+  for_registers(step.elements, first, last, [&](std::size_t b, int lane, int count) {
+    body(Elements{step.batches[b], step.flows ? step.flows + b : nullptr, b, lane}, count);
+  });
 }
 
 // A Gauss point's reference coordinates, in the order of the corners.
@@ -224,12 +220,7 @@ template <bool flows>
         K[pair] = K[pair] + block;
       }
   }
-  for (int pair = 0; pair < 36; ++pair) {
-    const Mat& block = K[pair];
-    const Lanes values[9] = {block.x.x, block.x.y, block.x.z, block.y.x, block.y.y,
-                             block.y.z, block.z.x, block.z.y, block.z.z};
-    for (int i = 0; i < 9; ++i) *reinterpret_cast<Lanes*>(blocks.blocks[pair][i] + e.lane) = values[i];
-  }
+  for (int pair = 0; pair < 36; ++pair) store(K[pair], e.lane, blocks.blocks[pair]);
 }
 
 // All lanes of a batch, those that repeat its last element, too: kernels calculate there.
@@ -266,6 +257,6 @@ void write_blocks(const NeoHookeanStep& step, std::size_t batch, HexahedronBlock
 
 }  // namespace
 
-const NeoHookeanKernels neo_hookean_kernels = {add_forces, add_product, write_blocks, write_flowed};
+const NeoHookeanKernels neo_hookean_kernels = {{add_forces, add_product, write_blocks}, write_flowed};
 
 }  // namespace plica::PLICA_KERNELS

@@ -1,8 +1,7 @@
 // Letters as in docs/theory/cell_volume.md: V the volume as a cubic polynomial of the modes m_j, g its gradient by
 // them.
-#include "mechanics/kernels/volume_kernels.hpp"
-
 #include "mechanics/kernels/hexahedron_lanes.hpp"
+#include "mechanics/kernels/tables.hpp"
 
 namespace plica::PLICA_KERNELS {
 namespace {
@@ -18,12 +17,9 @@ struct Elements {
 
 template <class Body>
 inline void for_elements(const VolumeStep& step, std::size_t first, std::size_t last, const Body& body) {
-  for (std::size_t b = first; b < last; ++b) {
-    const int count = count_in_batch(step.elements, b);
-    for (int lane = 0; lane < count; lane += width)
-      body(Elements{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane,
-                    count - lane < width ? count - lane : width});
-  }
+  for_registers(step.elements, first, last, [&](std::size_t b, int lane, int count) {
+    body(Elements{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane, count});
+  });
 }
 
 // Value of the cell of each element.
@@ -106,6 +102,6 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
 
 }  // namespace
 
-const VolumeKernels volume_kernels = {add_volumes, write_gradients, add_forces, add_product};
+const VolumeKernels volume_kernels = {{add_forces, add_product, nullptr}, add_volumes, write_gradients};
 
 }  // namespace plica::PLICA_KERNELS

@@ -3,14 +3,14 @@
 // exceeds the film.
 #pragma once
 
-#include <vector>
+#include <algorithm>
 
-#include "mechanics/law.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
+#include "mechanics/surroundings.hpp"
 
 namespace plica {
 
-class ShellDrag final : public Law {
+class ShellDrag final : public NodeLaw<ShellDrag> {
  public:
   static constexpr double film_um = 0.1;
 
@@ -18,23 +18,23 @@ class ShellDrag final : public Law {
   ShellDrag(const Tissue& tissue, const OuterShape& shell, double drag);
 
   [[nodiscard]] std::string_view name() const override { return "shell-drag"; }
-  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<ShellDrag>(*this); }
-  [[nodiscard]] double energy(const Step& step) const override;
-  [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override;
-  void add_forces(const Step& step, std::span<Vec3> forces) const override;
-  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
-  void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
-                                                    std::span<const Vec3> positions) const override;
-  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 
  private:
+  friend NodeLaw;
+  static constexpr bool dissipates = true;
+  [[nodiscard]] ShellDrag remade(const Tissue& tissue) const { return {tissue, shell_.shell(), drag_}; }
   template <class Take>
-  void for_touching(const Step& step, const Take& take) const;
+  void resist(const Step& step, std::size_t node, const Take& take) const {
+    if (coefficients_[node] == 0) return;
+    const Obstacle::Gap gap = shell_.gap(step.previous_positions[node]);
+    if (gap.value >= film_um) return;
+    const double part = std::min(1.0, 1 - gap.value / film_um);
+    const Mat3 along = Mat3::Identity() - gap.inward * gap.inward.transpose();
+    take(node, Mat3(part * coefficients_[node] / step.rate_s * along));
+  }
 
   Vitelline shell_;
   double drag_;
-  std::vector<double> coefficients_;  // nodes; nN s/um
 };
 
 }  // namespace plica

@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "core/uninitialised.hpp"
-#include "solver/algebra/block_pattern.hpp"
+#include "solver/algebra/linear_solver.hpp"
 #include "solver/algebra/panel_products.hpp"
-#include "solver/algebra/preconditioner.hpp"
+#include "solver/algebra/rows.hpp"
 
 namespace plica {
 

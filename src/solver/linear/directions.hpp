@@ -40,6 +40,10 @@ class NewtonDirections {
 /// definite part (cholesky) or by multigrid; automatic: by size.
 enum class LinearMethod { automatic, direct, cholesky, multigrid };
 
+/// Make the Krylov method with the preconditioner of `method`.
+std::unique_ptr<NewtonDirections> make_krylov_directions(const Model& model, LinearMethod method,
+                                                         std::function<bool()> stop_requested);
+/// Make the method, with the direct one beside a Krylov method that fails, up to some size.
 std::unique_ptr<NewtonDirections> make_directions(const Model& model, LinearMethod method,
                                                   std::function<bool()> stop_requested);
 

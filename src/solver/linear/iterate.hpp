@@ -34,7 +34,4 @@ struct Direction {
   std::vector<double> multipliers;  // all constraints
 };
 
-/// Return the pattern revisions of the laws in a step; a matrix is valid while they are unchanged.
-std::vector<int> pattern_revisions(const Model& model, const Step& step);
-
 }  // namespace plica

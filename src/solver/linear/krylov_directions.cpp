@@ -1,12 +1,200 @@
-#include "solver/linear/krylov_directions.hpp"
-
+// Newton directions by conjugate residuals with products of the laws: the system (linearised_step.hpp) is matrix-free;
+// only its preconditioner is assembled, and reused over steps.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.hpp"
+#include "solver/algebra/block_cholesky.hpp"
+#include "solver/algebra/krylov.hpp"
+#include "solver/linear/border.hpp"
+#include "solver/linear/chequerboard_factor.hpp"
+#include "solver/linear/directions.hpp"
+#include "solver/linear/linearised_step.hpp"
 
 namespace plica {
 namespace {
+
+constexpr std::size_t most_contact_changes = 32;  // before the factor is recomputed
+
+// gamma times the size of a cell, over the mean stiffness of a node. Large, so that few iterations are left for the
+// multipliers; but single precision has to carry A beside it, multigrid finds nearly incompressible cells hard (and has
+// ChequerboardFactor for the pressures: twice or half of gamma changes little), and within cells of several elements it
+// resists what the exact volumes allow. With a factor, a third takes a fifth more iterations, three times as much no
+// fewer.
+double regularisation(LinearMethod method, int parts) {
+  if (parts > 1) return 3;
+  return method == LinearMethod::multigrid ? 5 : 150;
+}
+
+/// Approximate inverse of the linear system of a Newton iteration, computed at one iterate and kept over steps: that of
+///   [ A             -J^T          ]
+///   [ -J   -(gamma W)^-1          ],  W = 1/gradient_scale,
+/// in which multipliers are eliminated: A + gamma J^T W J is positive definite, and its factor (or multigrid) is in
+/// single precision. Later changes of contacts are borders (border.hpp), as dense rows always are. Derivation:
+/// docs/theory/step.md, Linear systems.
+class KeptPreconditioner {
+ public:
+  /// Make a preconditioner of `system`, for steps with the patterns of `step`.
+  KeptPreconditioner(const Model& model, const LinearisedStep& system, LinearMethod method, const Step& step)
+      : model_(model), system_(system), method_(method), matrix_(model, step) {
+    if (method == LinearMethod::multigrid) {
+      preconditioner_ = make_multigrid(matrix_.layout());
+    } else {
+      auto factor = std::make_unique<BlockCholesky>(matrix_.layout());
+      factor_ = factor.get();
+      preconditioner_ = std::move(factor);
+    }
+    // Cells of several elements have nodes inside that feel the difference of any two pressures.
+    const bool is_refined = model.tissue.elements.size() >= 2 * model.tissue.cells.size();
+    if (method == LinearMethod::multigrid && matrix_.jacobian().sparse_rows() > 0 && !is_refined)
+      chequerboards_.emplace(matrix_.jacobian(), model.tissue.free_node_count());
+  }
+
+  /// Whether the patterns of the laws are unchanged.
+  [[nodiscard]] bool serves(const Step& step) const { return matrix_.serves(model_, step); }
+
+  /// Recompute it at the present iterate of the system. False, and it is unusable, if no nearby matrix is positive
+  /// definite.
+  [[nodiscard]] bool make(const Step& step, const Iterate& at) {
+    const std::vector<NodeFrame>& frames = system_.frames();
+    // The semidefinite part of the tangent serves where all of it is not definite.
+    for (const bool semidefinite : {false, true}) {
+      Step here = step;
+      here.semidefinite_tangent = semidefinite;
+      matrix_.assemble(model_, system_.contacts(), here, at);
+      weigh();
+      if (chequerboards_ && !chequerboards_->factorise(matrix_.jacobian(), matrix_, frames)) continue;
+      matrix_.add_constraint_stiffness(model_, at.positions, weights_);
+      matrix_.write_projected_blocks(frames, values_);
+      if (!preconditioner_->factorise(values_, rigid_motions(at))) continue;
+      if (factor_ != nullptr)
+        contacts_.begin(model_, system_.contacts(), matrix_, frames, at.in_contact, most_contact_changes);
+      border_dense_rows();
+      in_contact_ = at.in_contact;
+      return true;
+    }
+    return false;
+  }
+
+  /// Add changes of contacts since. False if it must be recomputed.
+  [[nodiscard]] bool follow_contacts(const Iterate& at) {
+    if (factor_ != nullptr) return contacts_.follow(at, *factor_);
+    // A solve for each that has changed is too much. The multigrid has the node's own stiffness along directions that
+    // were fixed, which is a preconditioner as long as they are few.
+    std::size_t changed = 0;
+    for (std::size_t k = 0; k < at.in_contact.size(); ++k) changed += at.in_contact[k] != in_contact_[k];
+    return changed <= system_.frames().size() / 100;
+  }
+
+  /// Update the dense rows at the present iterate, one solve each. (With those of an older iterate, held exactly,
+  /// solves took five more iterations.)
+  void border_dense_rows() {
+    const ConstraintJacobian& J = system_.jacobian();
+    const std::size_t numbers = 3 * model_.tissue.node_count() + J.sparse_rows();
+    std::vector<std::vector<double>> rows(J.dense_rows(), std::vector<double>(numbers, 0.0));
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const std::span<Vec3> of_nodes = system_.of_nodes(rows[row]);
+      std::ranges::copy(J.dense_row(row), of_nodes.begin());
+      system_.project(of_nodes);
+    }
+    dense_.begin(std::move(rows), [&](std::span<double> x) { apply_sparse(system_.of_nodes(x), system_.of_rows(x)); });
+  }
+
+  void apply(const KrylovVector& residual, KrylovVector& result) const {
+    const std::size_t sparse = matrix_.jacobian().sparse_rows();
+    const std::span<const double> units = system_.units();
+    result = residual;
+    const std::span<double> rows = system_.of_rows(result);
+    parallel_for(rows.size(), [&](std::size_t row) { rows[row] /= units[row]; });
+    apply_sparse(system_.of_nodes(result), rows.first(sparse));
+    if (!dense_.empty())
+      dense_.apply(std::span(result).first(result.size() - (rows.size() - sparse)), rows.subspan(sparse));
+  }
+
+  /// Return gamma W of the rows, a force over a length squared, divided by gradient_scale. For dense rows only a unit.
+  [[nodiscard]] std::span<const double> weights() const { return weights_; }
+
+ private:
+  void weigh() {
+    const double stiffness = matrix_.mean_diagonal();
+    const ConstraintJacobian& J = matrix_.jacobian();
+    weights_.clear();
+    for (std::size_t row = 0; row < J.rows(); ++row)
+      weights_.push_back(regularisation(method_, J.part_count(row)) * stiffness / J.gradient_scale(row));
+  }
+  [[nodiscard]] UninitialisedVector<float> rigid_motions(const Iterate& at) const {
+    const std::vector<NodeFrame>& frames = system_.frames();
+    Vec3 middle = Vec3::Zero();
+    for (std::size_t n = 0; n < frames.size(); ++n) middle += at.positions[n] / static_cast<double>(frames.size());
+    double size = 0;
+    for (std::size_t n = 0; n < frames.size(); ++n) size = std::max(size, (at.positions[n] - middle).norm());
+    UninitialisedVector<float> motions(18 * frames.size());
+    parallel_for(frames.size(), [&](std::size_t n) {
+      Eigen::Matrix<double, 3, 6> of_node;
+      of_node << Mat3::Identity(), -cross_matrix((at.positions[n] - middle) / size);
+      for (int j = 0; j < 6; ++j) of_node.col(j) = frames[n].free_part(of_node.col(j));
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 6; ++j) motions[18 * n + 6 * i + j] = static_cast<float>(of_node(i, j));
+    });
+    return motions;
+  }
+  void apply_inverse(std::span<Vec3> x) const {
+    if (factor_ != nullptr) return contacts_.solve(*factor_, x);
+    single_.resize(3 * x.size());
+    parallel_for(x.size(), [&](std::size_t n) {
+      for (int i = 0; i < 3; ++i) single_[3 * n + i] = static_cast<float>(x[n][i]);
+    });
+    preconditioner_->solve(single_);
+    parallel_for(x.size(), [&](std::size_t n) {
+      for (int i = 0; i < 3; ++i) x[n][i] = single_[3 * n + i];
+    });
+  }
+  // In place, from forces f and rates g to dx and multipliers, of the sparse rows:
+  //   dm = -gamma W (g + J dx),  (A + gamma J^T W J) dx = f - gamma J^T W g.
+  void apply_sparse(std::span<Vec3> dx, std::span<double> multipliers) const {
+    const std::size_t rows = multipliers.size(), free = system_.frames().size();
+    // J as in the factor: with another, gamma would carry the difference into directions that hardly resist.
+    const ConstraintJacobian& J = matrix_.jacobian();
+    parallel_for(rows, [&](std::size_t row) { multipliers[row] *= -weights_[row]; });
+    J.add_forces(multipliers, 1, dx);
+    system_.project(dx);
+    apply_inverse(dx.first(free));
+    system_.project(dx);
+    model_.tissue.place_hanging(dx);
+    J.add_rates(dx, weights_, -1, multipliers);
+    if (!chequerboards_) return;
+    // What gamma W leaves of the volumes' rates, g + J dx = -dm / (gamma W): p = L^-1 of it, dm -= p, dx -= D^-1 J^T p.
+    chequered_.resize(rows);
+    parallel_for(rows, [&](std::size_t row) { chequered_[row] = -multipliers[row] / weights_[row]; });
+    chequerboards_->solve(chequered_);
+    parallel_for(rows, [&](std::size_t row) { multipliers[row] -= chequered_[row]; });
+    moved_.resize(free);
+    parallel_for(moved_.size(), [&](std::size_t n) { moved_[n].setZero(); });
+    J.add_forces(chequered_, -1, moved_);
+    chequerboards_->displace(moved_);
+    parallel_for(moved_.size(), [&](std::size_t n) { dx[n] += moved_[n]; });
+    system_.project(dx);
+    model_.tissue.place_hanging(dx);
+  }
+
+  const Model& model_;
+  const LinearisedStep& system_;
+  LinearMethod method_;  // cholesky or multigrid
+  StepMatrix matrix_;    // with its J, at the iterate of the inverse
+  std::unique_ptr<Preconditioner> preconditioner_;
+  const BlockCholesky* factor_ = nullptr;  // the factor, if it is one, with its border
+  ContactBorder contacts_;
+  std::optional<ChequerboardFactor> chequerboards_;  // for modes that gamma W does not resist
+  DenseBorder dense_;
+  std::vector<char> in_contact_;  // contacts at the iterate of the inverse
+  std::vector<double> weights_;   // rows
+
+  mutable std::vector<double> chequered_;  // scratch
+  mutable Vectors moved_;
+  mutable std::vector<float> single_;
+  UninitialisedVector<float> values_;
+};
 
 constexpr double far_from_balance = 0.1;  // residual's forces, relative
 
@@ -30,90 +218,112 @@ double accuracy_of_whole(double accuracy, const KrylovVector& right, std::size_t
 /// The share that reducing the residual to this has of a solve to 1e-4.
 double share_of_solve(double residual) { return std::clamp(std::log10(residual) / -4, 0.1, 4.0); }
 
+class KrylovDirections final : public NewtonDirections {
+ public:
+  KrylovDirections(const Model& model, LinearMethod method, std::function<bool()> stop_requested)
+      : model_(model),
+        stop_requested_(std::move(stop_requested)),
+        method_(method),
+        system_(model),
+        price_of_new_(method == LinearMethod::multigrid ? 5 : 30) {}
+  [[nodiscard]] Status find(const Step& step, const Iterate& at, const Residual& residual,
+                            const ForcingTermInput& forcing, Direction& direction, Cost& cost) override {
+    system_.take(step, at);
+    constexpr KrylovReport at_beginning{.residual = 1};
+    KrylovReport before_new = at_beginning;  // where the solve was when the preconditioner was made
+    bool is_new = false;
+    const auto renew = [&](const KrylovReport& so_far) {
+      ++cost.factorisations;
+      fit_pattern(step);
+      is_made_ = kept_->make(step, at);
+      is_new = true;
+      before_new = so_far;
+    };
+    if (!keeps_factor() || !kept_->follow_contacts(at))
+      renew(at_beginning);
+    else
+      kept_->border_dense_rows();
+
+    // Where energy curves down along some direction, that leads to a saddle, if anywhere, and iterations do not end:
+    // far from balance the semidefinite tangent shows the way. Near it Newton's method needs all of the tangent.
+    Step here = step;
+    bool is_indefinite = false;
+    const auto multiply = [&](const KrylovVector& p, KrylovVector& q) {
+      system_.multiply(here, at, p, q);
+      if (residual.force > far_from_balance && !here.semidefinite_tangent &&
+          system_.curvature(p, q, kept_->weights()) < 0)
+        is_indefinite = true;
+    };
+    const auto go_on = [&](const KrylovReport& so_far) {
+      if (!is_new && wasted(so_far) > 3 * price_of_new_) renew(so_far);
+      return is_made_ && !is_indefinite && !(stop_requested_ && stop_requested_());
+    };
+    KrylovReport report;
+    KrylovVector solution;
+    while (true) {
+      system_.set_units(kept_->weights());  // and not on the way, should weights become others
+      const KrylovVector right = system_.right_side(residual);
+      const double accuracy = accuracy_of_whole(forcing.relative_tolerance, right, at.positions.size());
+      report = solver_.solve(
+          multiply, [&](const KrylovVector& r, KrylovVector& z) { kept_->apply(r, z); }, right,
+          {.tolerance = useful_tolerance(residual, {forcing.residual_reduction, accuracy})}, go_on, solution);
+      cost.linear_solves += report.iterations;
+      if (report.converged) break;
+      if (is_indefinite) {
+        is_indefinite = false;
+        here.semidefinite_tangent = true;
+        before_new = at_beginning;
+      } else if (!report.interrupted && !is_new) {
+        renew(at_beginning);
+      } else {
+        break;
+      }
+    }
+    if (!is_made_) return Status::singular;
+    if (report.interrupted) return Status::interrupted;
+    // An inexact direction is still one; the line search judges it.
+    if (!(report.residual < 0.5)) return Status::singular;
+    if (is_new) {
+      const double share = share_of_solve(report.residual / before_new.residual);
+      iterations_when_new_ = static_cast<int>(std::lround((report.iterations - before_new.iterations) / share));
+      wasted_iterations_ = 0;
+    } else {
+      wasted_iterations_ += wasted(report);
+    }
+    direction = system_.direction_of(solution, at.multipliers.size());
+    return Status::found;
+  }
+  void forget_factor() override { is_made_ = false; }
+  [[nodiscard]] bool keeps_factor() const override { return is_made_ && wasted_iterations_ <= price_of_new_; }
+
+ private:
+  /// Take new patterns: the preconditioner stays in use while it is good.
+  void fit_pattern(const Step& step) {
+    if (!kept_ || !kept_->serves(step)) kept_ = std::make_unique<KeptPreconditioner>(model_, system_, method_, step);
+  }
+  /// Return the iterations of a solve that a new preconditioner would have saved.
+  [[nodiscard]] int wasted(const KrylovReport& report) const {
+    const long needed = std::lround(iterations_when_new_ * share_of_solve(report.residual));
+    return std::max(0, report.iterations - static_cast<int>(needed));
+  }
+
+  const Model& model_;
+  std::function<bool()> stop_requested_;
+  LinearMethod method_;  // cholesky or multigrid
+  LinearisedStep system_;
+  std::unique_ptr<KeptPreconditioner> kept_;  // for the patterns at its computation
+  bool is_made_ = false;
+  int price_of_new_;             // cost of a new one, in iterations, including assembly
+  int iterations_when_new_ = 0;  // to 1e-4
+  int wasted_iterations_ = 0;
+  ConjugateResiduals solver_;
+};
+
 }  // namespace
 
-KrylovDirections::KrylovDirections(const Model& model, Inverse inverse, std::function<bool()> stop_requested)
-    : model_(model),
-      stop_requested_(std::move(stop_requested)),
-      inverse_(inverse),
-      system_(model),
-      price_of_new_(inverse == Inverse::multigrid ? 5 : 30) {}
-
-void KrylovDirections::fit_pattern(const Step& step) {
-  if (!kept_ || !kept_->serves(step)) kept_ = std::make_unique<KeptPreconditioner>(model_, system_, inverse_, step);
-}
-
-int KrylovDirections::wasted(const KrylovReport& report) const {
-  const long needed = std::lround(iterations_when_new_ * share_of_solve(report.residual));
-  return std::max(0, report.iterations - static_cast<int>(needed));
-}
-
-NewtonDirections::Status KrylovDirections::find(const Step& step, const Iterate& at, const Residual& residual,
-                                                const ForcingTermInput& forcing, Direction& direction, Cost& cost) {
-  system_.take(step, at);
-  constexpr KrylovReport at_beginning{.residual = 1};
-  KrylovReport before_new = at_beginning;  // where the solve was when the preconditioner was made
-  bool is_new = false;
-  const auto renew = [&](const KrylovReport& so_far) {
-    ++cost.factorisations;
-    fit_pattern(step);
-    is_made_ = kept_->make(step, at);
-    is_new = true;
-    before_new = so_far;
-  };
-  if (!keeps_factor() || !kept_->follow_contacts(at))
-    renew(at_beginning);
-  else
-    kept_->border_dense_rows();
-
-  // Where energy curves down along some direction, that leads to a saddle, if anywhere, and iterations do not end: far
-  // from balance the semidefinite tangent shows the way. Near it Newton's method needs all of the tangent.
-  Step here = step;
-  bool is_indefinite = false;
-  const auto multiply = [&](const KrylovVector& p, KrylovVector& q) {
-    system_.multiply(here, at, p, q);
-    if (residual.force > far_from_balance && !here.semidefinite_tangent &&
-        system_.curvature(p, q, kept_->weights()) < 0)
-      is_indefinite = true;
-  };
-  const auto go_on = [&](const KrylovReport& so_far) {
-    if (!is_new && wasted(so_far) > 3 * price_of_new_) renew(so_far);
-    return is_made_ && !is_indefinite && !(stop_requested_ && stop_requested_());
-  };
-  KrylovReport report;
-  KrylovVector solution;
-  while (true) {
-    system_.set_units(kept_->weights());  // and not on the way, should weights become others
-    const KrylovVector right = system_.right_side(residual);
-    const double accuracy = accuracy_of_whole(forcing.relative_tolerance, right, at.positions.size());
-    report = solver_.solve(
-        multiply, [&](const KrylovVector& r, KrylovVector& z) { kept_->apply(r, z); }, right,
-        {.tolerance = useful_tolerance(residual, {forcing.residual_reduction, accuracy})}, go_on, solution);
-    cost.linear_solves += report.iterations;
-    if (report.converged) break;
-    if (is_indefinite) {
-      is_indefinite = false;
-      here.semidefinite_tangent = true;
-      before_new = at_beginning;
-    } else if (!report.interrupted && !is_new) {
-      renew(at_beginning);
-    } else {
-      break;
-    }
-  }
-  if (!is_made_) return Status::singular;
-  if (report.interrupted) return Status::interrupted;
-  // An inexact direction is still one; the line search judges it.
-  if (!(report.residual < 0.5)) return Status::singular;
-  if (is_new) {
-    const double share = share_of_solve(report.residual / before_new.residual);
-    iterations_when_new_ = static_cast<int>(std::lround((report.iterations - before_new.iterations) / share));
-    wasted_iterations_ = 0;
-  } else {
-    wasted_iterations_ += wasted(report);
-  }
-  direction = system_.direction_of(solution, at.multipliers.size());
-  return Status::found;
+std::unique_ptr<NewtonDirections> make_krylov_directions(const Model& model, LinearMethod method,
+                                                         std::function<bool()> stop_requested) {
+  return std::make_unique<KrylovDirections>(model, method, std::move(stop_requested));
 }
 
 }  // namespace plica

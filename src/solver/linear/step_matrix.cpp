@@ -46,6 +46,13 @@ BlockPattern pattern_of(const Model& model, const Step& step) {
 
 }  // namespace
 
+std::vector<int> pattern_revisions(const Model& model, const Step& step) {
+  std::vector<int> revisions;
+  for_laws(model, step,
+           [&](const Law& law, const Step& own) { revisions.push_back(law.pattern_revision(own.internal)); });
+  return revisions;
+}
+
 StepMatrix::StepMatrix(const Model& model, const Step& step)
     : tissue_(model.tissue),
       revisions_(pattern_revisions(model, step)),

@@ -20,6 +20,9 @@
 
 namespace plica {
 
+/// Return the pattern revisions of the laws in a step; a matrix is valid while they are unchanged.
+std::vector<int> pattern_revisions(const Model& model, const Step& step);
+
 class StepMatrix final : public TangentSink {
  public:
   /// Make the matrix for steps with the patterns of this one.

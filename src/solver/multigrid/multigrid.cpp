@@ -5,10 +5,9 @@
 
 #include "core/parallel.hpp"
 #include "solver/algebra/block_cholesky.hpp"
-#include "solver/algebra/preconditioner.hpp"
-#include "solver/multigrid/galerkin.hpp"
-#include "solver/multigrid/order.hpp"
+#include "solver/algebra/linear_solver.hpp"
 #include "solver/multigrid/smoother.hpp"
+#include "solver/multigrid/transfer.hpp"
 
 namespace plica {
 namespace multigrid {

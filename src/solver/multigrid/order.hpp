@@ -1,8 +1,7 @@
-// Node order with small distances between neighbours, so that several products can follow one another through memory
-// (smoother.hpp).
+// Order of the nodes of a level with small distances between neighbours, so that several products can follow one
+// another through memory (smoother.hpp), and their aggregation: groups that become one node of the next coarser level.
 #pragma once
 
-#include "solver/algebra/block_pattern.hpp"
 #include "solver/algebra/rows.hpp"
 
 namespace plica::multigrid {
@@ -14,5 +13,15 @@ std::vector<int> places_by_distance(const BlockPattern& pattern);
 /// Return the bounds of consecutive groups of at least `least` rows (fewer in the last), such that all columns of the
 /// rows of a group lie in it or in the two adjacent groups. If neighbours are far apart, there are few groups.
 std::vector<int> groups_of_rows(const Rows& matrix, int least);
+
+struct Aggregates {
+  int count = 0;
+  std::vector<int> of_node;  // -1: isolated node, omitted on the coarser level
+  Rows members;              // nodes of each aggregate
+};
+
+/// Make disjoint neighbourhoods: a node with all its neighbours if none is taken yet; each remaining node joins the
+/// aggregate with most of its neighbours. 27 nodes in a lattice of hexahedra, 18 in a sheet of one layer.
+Aggregates make_aggregates(const Rows& matrix);
 
 }  // namespace plica::multigrid

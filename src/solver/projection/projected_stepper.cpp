@@ -1,8 +1,100 @@
 #include "solver/projection/projected_stepper.hpp"
 
-#include "solver/step/backward_difference.hpp"
+#include <algorithm>
+#include <cmath>
+
+#include "solver/algebra/krylov.hpp"
 
 namespace plica {
+namespace {
+
+/// The 3 x 3 blocks on the diagonal of a tangent.
+struct DiagonalBlocks final : TangentSink {
+  explicit DiagonalBlocks(std::size_t nodes) : blocks(nodes, Mat3::Zero()) {}
+  void add_block(NodeId row, NodeId column, const Mat3& block) override {
+    if (row == column) blocks[row.index()] += block;
+  }
+  std::vector<Mat3> blocks;
+};
+
+std::span<Vec3> as_vectors(KrylovVector& vector) { return {reinterpret_cast<Vec3*>(vector.data()), vector.size() / 3}; }
+std::span<const Vec3> as_vectors(const KrylovVector& vector) {
+  return {reinterpret_cast<const Vec3*>(vector.data()), vector.size() / 3};
+}
+
+}  // namespace
+
+LinearlyImplicit::LinearlyImplicit(const Model& model, double tolerance, int most_iterations)
+    : model_(model), tolerance_(tolerance), most_iterations_(most_iterations) {}
+
+void LinearlyImplicit::keep_held(std::span<Vec3> vectors) const {
+  for (std::size_t n = 0; n < vectors.size(); ++n)
+    for (int axis = 0; axis < 3; ++axis)
+      if (model_.held[n][axis]) vectors[n][axis] = 0;
+}
+
+StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool /*from_rest*/, State& next,
+                                     const Model* grown) {
+  const std::size_t nodes = state.positions.size();
+  Step step{state.positions, state.positions, state.velocities, duration_s, state.time_s + duration_s};
+  step.semidefinite_tangent = true;
+  step.internals = state.internals;
+  step.grown = grown;
+  StepReport report;
+  KrylovVector forces(3 * nodes, 0.0);
+  for_laws(model_, step, [&](const Law& law, const Step& own) { law.add_forces(own, as_vectors(forces)); });
+  keep_held(as_vectors(forces));
+
+  DiagonalBlocks diagonal(nodes);
+  for_laws(model_, step, [&](const Law& law, const Step& own) { law.add_tangent(own, diagonal); });
+  for (std::size_t n = 0; n < nodes; ++n) {
+    Mat3& block = diagonal.blocks[n];
+    for (int axis = 0; axis < 3; ++axis)
+      if (model_.held[n][axis]) {
+        block.row(axis).setZero();
+        block.col(axis).setZero();
+        block(axis, axis) = 1;
+      }
+    block = block.inverse().eval();
+  }
+
+  const auto multiply = [&](const KrylovVector& direction, KrylovVector& product) {
+    std::ranges::fill(product, 0.0);
+    for_laws(model_, step, [&](const Law& law, const Step& own) {
+      law.add_tangent_product(own, as_vectors(direction), as_vectors(product));
+    });
+    keep_held(as_vectors(product));
+  };
+  const auto precondition = [&](const KrylovVector& residual, KrylovVector& result) {
+    for (std::size_t n = 0; n < nodes; ++n) as_vectors(result)[n] = diagonal.blocks[n] * as_vectors(residual)[n];
+  };
+  KrylovVector displacements;
+  const KrylovReport solved = conjugate_gradients(
+      multiply, precondition, forces, {.tolerance = tolerance_, .most_iterations = most_iterations_},
+      [&](const KrylovReport&) { return !(stop_requested_ && stop_requested_()); }, displacements);
+  report.newton_iterations = 1;
+  report.linear_solves = solved.iterations;
+  report.residual = solved.residual;
+  if (!solved.converged) {
+    report.status = solved.interrupted               ? StepReport::Status::interrupted
+                    : std::isfinite(solved.residual) ? StepReport::Status::no_linear_convergence
+                                                     : StepReport::Status::not_finite;
+    report.cell = cell_with_largest(model_.tissue, as_vectors(forces));
+    return report;
+  }
+
+  next.positions = state.positions;
+  for (std::size_t n = 0; n < nodes; ++n) next.positions[n] += as_vectors(displacements)[n];
+  next.time_s = state.time_s + duration_s;
+  next.multipliers.assign(state.multipliers.size(), 0.0);
+  next.contact_forces.assign(state.contact_forces.size(), 0.0);
+  next.in_contact.assign(state.in_contact.size(), 0);
+  step.positions = next.positions;
+  next.internals = next_internals(model_, step);
+  record_motion(state, duration_s, TimeOrder::first, next);
+  report.status = StepReport::Status::converged;
+  return report;
+}
 
 ProjectedStepper::ProjectedStepper(const Model& model, std::unique_ptr<Stepper> force_step,
                                    const std::optional<ProjectionRule>& rule)

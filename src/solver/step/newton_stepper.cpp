@@ -1,17 +1,187 @@
 #include "solver/step/newton_stepper.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "core/parallel.hpp"
+#include "solver/linear/node_frame.hpp"
 
 namespace plica {
+namespace {
+
+// The ways of a node's contacts, normalised, as columns.
+Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> normals_of(const NodeContacts& touched) {
+  Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> normals(3, touched.count);
+  for (int k = 0; k < touched.count; ++k) normals.col(k) = touched.way[k].normalized();
+  return normals;
+}
+
+}  // namespace
+
+/// Residual of an iterate of a step, and the contact states of nodes.
+class Balance {
+ public:
+  Balance(const Model& model, const StepTolerances& tolerances)
+      : model_(model),
+        tolerances_(tolerances),
+        contacts_(model),
+        force_scale_(model.force_scale()),
+        position_rounding_(model.position_rounding()),
+        elastic_rounding_(model.elastic_rounding()) {
+    for (std::size_t place = 0; place < model.constraint_count(); ++place)
+      constraint_rounding_.push_back(model.constraint(place).rounding(model.tissue, position_rounding_));
+  }
+
+  /// Compute the residual and sets the contact forces of the iterate: obstacles bear the forces that push nodes
+  /// outward along their normals.
+  [[nodiscard]] Residual residual(const Step& step, Iterate& at) const {
+    Residual r;
+    r.forces.assign(at.positions.size(), Vec3::Zero());
+    Vectors of_one(at.positions.size(), Vec3::Zero());
+    double balanced = 0;  // squared norm of the forces that have to balance
+    double rounding = elastic_rounding_;
+    const auto take = [&] {
+      model_.tissue.carry_hanging(of_one);
+      balanced += parallel_squared_norm(of_one);
+      parallel_for(of_one.size(), [&](std::size_t n) {
+        r.forces[n] += of_one[n];
+        of_one[n].setZero();
+      });
+    };
+    for_laws(model_, step, [&](const Law& law, const Step& own) {
+      law.add_forces(own, of_one);
+      take();
+      rounding += law.rounding(own, position_rounding_);
+    });
+    r.deficits.assign(at.multipliers.size(), 0.0);
+    const Model& model = at_end(model_, step);
+    for_held_constraints(model, [&](const Constraint& constraint, std::size_t first, std::size_t place) {
+      constraint.add_forces(at.positions, std::span(at.multipliers).subspan(first, constraint.count()), of_one);
+      take();
+      const std::span<double> deficits = std::span(r.deficits).subspan(first, constraint.count());
+      constraint.values(at.positions, deficits);
+      double worst = 0;
+      for (std::size_t f = 0; f < deficits.size(); ++f) {
+        deficits[f] = constraint.targets()[f] - deficits[f];
+        worst = std::max(worst, std::abs(deficits[f] / constraint.targets()[f]));
+      }
+      r.constraint = std::max(r.constraint, worst);
+      r.constraint_excess =
+          std::max(r.constraint_excess, worst / std::max(tolerances_.constraint, constraint_rounding_[place]));
+    });
+    add_contact_forces(at, r.forces, of_one);
+    take();
+
+    Vectors& free = of_one;
+    parallel_for(model_.tissue.free_node_count(),
+                 [&](std::size_t n) { free[n] = without_held(model_, n, r.forces[n]); });
+    take_out_normals(at, free);
+    // Relative to the balancing forces, but at least to a floor, where these are negligible or at rounding level.
+    const double floor = std::max(1e-4 * force_scale_, rounding / tolerances_.force);
+    r.force = std::sqrt(parallel_squared_norm(free)) / (std::sqrt(balanced) + floor);
+    return r;
+  }
+
+  [[nodiscard]] bool is_solved(const Residual& residual) const {
+    return residual.force <= tolerances_.force && residual.constraint_excess <= 1;
+  }
+
+  /// Release nodes pulled inward, adds nodes outside, and projects all onto their obstacles. Returns whether any
+  /// contact changed. `changes`: contacts; number of changes in this step, updated here.
+  bool revise_contacts(Iterate& at, std::span<unsigned char> changes) const {
+    constexpr unsigned char many = 3;
+    std::vector<char> wanted(at.in_contact.begin(), at.in_contact.end());
+    parallel_for(wanted.size(), [&](std::size_t k) {
+      const Obstacle::Gap gap = contacts_.gap(k, at.positions);
+      // A node that is held where an obstacle would push it is the hold's business.
+      if (without_held(model_, contacts_.node(k).index(), gap.inward).norm() < 1e-6) {
+        at.in_contact[k] = wanted[k] = 0;
+        at.contact_forces[k] = 0;
+      } else if (at.in_contact[k]) {
+        // Pulled inward for real: let go. Forces of rounding's size are none.
+        if (at.contact_forces[k] < -1e-12 * force_scale_) wanted[k] = 0;
+        if (at.contact_forces[k] < 0) at.contact_forces[k] = 0;
+      } else if (gap.value < -tolerances_.gap_um) {
+        wanted[k] = 1;
+      }
+    });
+    // Changed all at once, contacts that pull at each other may come and go in turns for ever. Those that have changed
+    // often change one at a time, the first of them, which ends (Murty 1974), as long as forces are linear.
+    bool changed = false, any_waits = false;
+    std::size_t first_waiting = 0;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      if (wanted[k] == at.in_contact[k]) continue;
+      if (changes[k] >= many) {
+        if (!any_waits) first_waiting = k;
+        any_waits = true;
+        continue;
+      }
+      at.in_contact[k] = wanted[k];
+      ++changes[k];
+      changed = true;
+    }
+    if (any_waits && !changed) at.in_contact[first_waiting] = wanted[first_waiting];
+    return_to_obstacles(model_, contacts_, at);
+    return changed || any_waits;
+  }
+
+  [[nodiscard]] const Contacts& contacts() const { return contacts_; }
+
+ private:
+  void add_contact_forces(Iterate& at, std::span<const Vec3> others, std::span<Vec3> forces) const {
+    parallel_for(contacts_.node_count(), [&](std::size_t place) {
+      const auto of_node = contacts_.at_node(place);
+      const NodeContacts touched = node_contacts(model_, contacts_, of_node, at);
+      if (touched.count == 0) return;
+      const std::size_t n = contacts_.node(of_node.front()).index();
+      if (touched.count == 1) {
+        const Vec3 normal = touched.way[0].normalized();
+        double& force = at.contact_forces[touched.contact[0]];
+        force = -normal.dot(others[n]) / normal.dot(touched.inward[0]);
+        forces[n] = force * touched.inward[0];
+        return;
+      }
+      const auto normals = normals_of(touched);
+      Eigen::MatrixXd pushes(3, touched.count);
+      for (int k = 0; k < touched.count; ++k) pushes.col(k) = touched.inward[k];
+      const Eigen::VectorXd sizes =
+          (normals.transpose() * pushes).partialPivLu().solve(-normals.transpose() * others[n]);
+      for (const std::size_t k : of_node)
+        at.contact_forces[k] = 0;  // of one that leaves nothing to do beside the others
+      for (int k = 0; k < touched.count; ++k) at.contact_forces[touched.contact[k]] = sizes[k];
+      forces[n] = pushes * sizes;
+    });
+  }
+  void take_out_normals(const Iterate& at, std::span<Vec3> forces) const {
+    parallel_for(contacts_.node_count(), [&](std::size_t place) {
+      const auto of_node = contacts_.at_node(place);
+      const NodeContacts touched = node_contacts(model_, contacts_, of_node, at);
+      Vec3& force = forces[contacts_.node(of_node.front()).index()];
+      if (touched.count == 1) {
+        const Vec3 normal = touched.way[0].normalized();
+        force -= normal.dot(force) * normal;
+      } else if (touched.count > 1) {
+        const auto normals = normals_of(touched);
+        force -= normals * (normals.transpose() * normals).ldlt().solve(normals.transpose() * force).eval();
+      }
+    });
+  }
+
+  const Model& model_;
+  StepTolerances tolerances_;
+  Contacts contacts_;
+  double force_scale_;                       // nN
+  double position_rounding_;                 // um
+  double elastic_rounding_;                  // nN: resulting error of elastic forces
+  std::vector<double> constraint_rounding_;  // resulting error of relative values; constraints
+};
 
 NewtonStepper::NewtonStepper(const Model& model, StepTolerances tolerances, LinearMethod method, TimeOrder order)
     : model_(model),
       tolerances_(tolerances),
       order_(order),
-      balance_(model, tolerances),
+      balance_(std::make_unique<Balance>(model, tolerances)),
       directions_(make_directions(model, method, [this] { return stop_requested_ && stop_requested_(); })) {}
 
 NewtonStepper::~NewtonStepper() = default;
@@ -31,13 +201,13 @@ bool NewtonStepper::search_line(const Step& step, const Direction& d, Iterate& a
   for (int halving = 0; halving < 8; ++halving, part *= 0.5) {
     Iterate trial = at;
     parallel_for(trial.positions.size(), [&](std::size_t n) { trial.positions[n] += part * d.positions[n]; });
-    return_to_obstacles(model_, balance_.contacts(), trial);
+    return_to_obstacles(model_, balance_->contacts(), trial);
     blocking = inverted_cell(model_.tissue, trial.positions);
     if (blocking) continue;
     for (std::size_t m = 0; m < trial.multipliers.size(); ++m) trial.multipliers[m] += part * d.multipliers[m];
     Step there = step;
     there.positions = trial.positions;
-    Residual r = balance_.residual(there, trial);
+    Residual r = balance_->residual(there, trial);
     if (r.finite() && (!best || r.merit() < best->second.merit())) best.emplace(std::move(trial), std::move(r));
     if (best && best->second.merit() < (1 - 1e-4 * part) * now.merit()) break;
   }
@@ -92,9 +262,9 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
   StepReport report;
   std::vector<unsigned char> contact_changes(at.in_contact.size());
   const auto first_residual = [&](Iterate& start, std::vector<unsigned char>& changes) {
-    balance_.revise_contacts(start, changes);
+    balance_->revise_contacts(start, changes);
     step.positions = start.positions;
-    return balance_.residual(step, start);
+    return balance_->residual(step, start);
   };
   Residual now = first_residual(at, contact_changes);
   // Near the inversion barrier, the prediction drives corners deep into it, and Newton's method takes many iterations
@@ -112,9 +282,9 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
   }
   // Whether nothing wants to leave or join an obstacle, by the forces of this iterate.
   const auto settle_contacts = [&] {
-    if (!balance_.revise_contacts(at, contact_changes)) return true;
+    if (!balance_->revise_contacts(at, contact_changes)) return true;
     step.positions = at.positions;
-    now = balance_.residual(step, at);
+    now = balance_->residual(step, at);
     return false;
   };
   bool contacts_settled = false;
@@ -129,7 +299,7 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
       report.cell = cell_with_largest(model_.tissue, now.forces);
       return report;
     }
-    if (balance_.is_solved(now) && (contacts_settled || settle_contacts())) break;
+    if (balance_->is_solved(now) && (contacts_settled || settle_contacts())) break;
     if (stop_requested_ && stop_requested_()) {
       report.status = StepReport::Status::interrupted;
       return report;

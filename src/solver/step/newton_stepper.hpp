@@ -12,11 +12,21 @@
 
 #include "mechanics/model.hpp"
 #include "solver/linear/directions.hpp"
+#include "solver/linear/iterate.hpp"
 #include "solver/step/backward_difference.hpp"
-#include "solver/step/balance.hpp"
 #include "solver/step/stepper.hpp"
 
 namespace plica {
+
+/// Convergence tolerances of a step.
+struct StepTolerances {
+  double force = 1e-8;        // residual / norm of the balancing forces
+  double constraint = 1e-10;  // |value/target - 1| of every held function
+  double gap_um = 1e-8;       // penetration of a node into an obstacle
+  int max_iterations = 40;
+};
+
+class Balance;
 
 /// Stepper of one model; keeps data shared by linear systems of successive steps.
 class NewtonStepper final : public Stepper {
@@ -40,7 +50,7 @@ class NewtonStepper final : public Stepper {
   const Model& model_;
   StepTolerances tolerances_;
   TimeOrder order_;
-  Balance balance_;
+  std::unique_ptr<Balance> balance_;
   std::unique_ptr<NewtonDirections> directions_;
   std::function<bool()> stop_requested_;
 };

@@ -2,7 +2,6 @@
 #include "mechanics/contact/edge_pairs.hpp"
 
 #include "measure/self_intersections.hpp"
-#include "mechanics/contact/closest_point.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
 #include "support/roofs.hpp"

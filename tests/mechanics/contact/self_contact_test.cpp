@@ -274,7 +274,7 @@ void add_ridge(Bodies& bodies, const std::array<Vec3, 3>& way, const Vec3& insid
 std::vector<ContactPair> pairs_at(const Vec3& place, const std::vector<ContactPair>& pairs, const Tissue& tissue) {
   std::vector<ContactPair> result;
   for (const ContactPair& pair : pairs)
-    if (!pair.is_of_edges() && pair.p.count == 1 && (pair.p.at(tissue.rest_positions) - place).norm() < 1e-9)
+    if (!pair.is_of_edges() && pair.p.count() == 1 && (pair.p.at(tissue.rest_positions) - place).norm() < 1e-9)
       result.push_back(pair);
   return result;
 }

@@ -3,7 +3,6 @@
 
 #include "core/threads.hpp"
 #include "solver/make_stepper.hpp"
-#include "solver/projection/linearly_implicit.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"

@@ -4,8 +4,6 @@
 #include <Eigen/Dense>
 
 #include "mechanics/constraints/cell_volume.hpp"
-#include "solver/projection/closed_surface.hpp"
-#include "solver/projection/cubic.hpp"
 #include "support/models.hpp"
 
 namespace {
