@@ -14,7 +14,6 @@
 #include "core/units.hpp"
 #include "core/words.hpp"
 #include "record/archive.hpp"
-#include "record/outcome.hpp"
 #include "record/run_scenario.hpp"
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"

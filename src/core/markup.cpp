@@ -1,5 +1,8 @@
 #include "core/markup.hpp"
 
+#include <algorithm>
+#include <cstdint>
+
 namespace plica {
 
 std::string xml_escaped(const std::string& text) {
@@ -17,6 +20,21 @@ std::string xml_escaped(const std::string& text) {
       escaped += letter;
   }
   return escaped;
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text((bytes.size() + 2) / 3 * 4, '=');
+  char* at = text.data();
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (std::size_t k = 0; k <= count; ++k) at[k] = digits[group >> (18 - 6 * k) & 63];
+    at += 4;
+  }
+  return text;
 }
 
 }  // namespace plica

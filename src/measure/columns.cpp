@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "measure/measure_set.hpp"
@@ -13,20 +14,16 @@ namespace {
 
 using enum InSummary;
 
-// Order of series.csv. Columns that are not named here follow, set by set.
+// Places that programs know in series.csv. Columns that are not named here follow, set by set.
 constexpr std::string_view order =
-    "time_s furrow_depth_um furrow_depth_below_lips_um lip_distance_um highest_points_distance_um vml_speed_um_per_s "
-    "vce_speed_um_per_s speed_ratio vml_displacement_um vce_displacement_um vml_apical_area_ratio "
-    "vce_apical_area_ratio "
-    "peak_speed_ratio peak_speed_ratio_time_s ends_lead_until_s vml_displacement_at_equal_speed_um "
-    "vce_displacement_at_equal_speed_um max_node_speed_um_per_s max_volume_error max_shell_penetration_um "
-    "min_scaled_jacobian lumen_volume_ratio cells step_s newton_iterations linear_iterations self_intersections "
-    "projection_sweeps cubic_solves cubic_three_real_roots refused_steps vml_height_um min_apical_area_ratio "
-    "min_corner_jacobian_ratio enclosed_volume_ratio yolk_pressure_Pa shell_fluid_um3 flank_volume_ratio contact_pairs "
-    "min_contact_distance_um closed_length_ratio lips_closed lips_closed_time_s depth_20um_time_s knee_depth_um "
-    "knee_time_s active_work_nN_um stored_energy_nN_um dissipated_energy_nN_um energy_imbalance_ratio "
-    "flank_section_area_ratio short_edges midline_waviness_um bending_error max_displacement_um mean_height_um "
-    "tissue_volume_ratio self_intersections_time_s ";
+    "time_s furrow_depth_um furrow_depth_below_lips_um lip_distance_um vml_speed_um_per_s vce_speed_um_per_s "
+    "speed_ratio vml_displacement_um vce_displacement_um vml_apical_area_ratio vce_apical_area_ratio "
+    "max_node_speed_um_per_s max_volume_error lumen_volume_ratio cells step_s newton_iterations linear_iterations "
+    "self_intersections refused_steps vml_height_um min_apical_area_ratio min_corner_jacobian_ratio "
+    "enclosed_volume_ratio yolk_pressure_Pa shell_fluid_um3 flank_volume_ratio contact_pairs min_contact_distance_um "
+    "closed_length_ratio lips_closed active_work_nN_um stored_energy_nN_um dissipated_energy_nN_um "
+    "energy_imbalance_ratio flank_section_area_ratio short_edges midline_waviness_um bending_error "
+    "max_displacement_um mean_height_um tissue_volume_ratio ";
 
 std::size_t place_of(const Column& column) { return order.find(std::string(column.name) + ' '); }
 
@@ -41,7 +38,17 @@ std::vector<Column> make_columns() {
   return all;
 }
 
-std::optional<double> reduced(const Column& column, std::span<const Observation> rows) {
+}  // namespace
+
+bool fits_columns(const Observation& row) {
+  const auto is_count = [](double number) { return std::abs(number) <= 1e9 && number == std::floor(number); };
+  return row.values.size() == columns().size() && std::ranges::all_of(columns(), [&](const Column& column) {
+           return !column.is_count || !row[column] || is_count(*row[column]);
+         });
+}
+
+std::optional<double> summary_value(const Column& column, std::span<const Observation> rows) {
+  if (column.of_run) return column.of_run(rows);
   if (column.in_summary == last) return rows.back()[column];
   std::optional<double> result;
   for (const Observation& row : rows) {
@@ -58,8 +65,6 @@ std::optional<double> reduced(const Column& column, std::span<const Observation>
   }
   return result;
 }
-
-}  // namespace
 
 std::span<const MeasureSet> measure_sets() {
   static const std::vector<MeasureSet> sets = {run_set(),           fold_set(),   furrow_set(),   contact_set(),
@@ -101,28 +106,6 @@ std::size_t column_index(std::string_view name) {
   const auto found = std::ranges::find(columns(), name, &Column::name);
   if (found == columns().end()) throw std::logic_error("unknown column " + std::string(name));
   return static_cast<std::size_t>(found - columns().begin());
-}
-
-ColumnList all_columns() {
-  ColumnList all;
-  for (const Column& column : columns()) all.push_back(&column);
-  return all;
-}
-
-ColumnList summary_columns(ColumnList columns) {
-  std::erase_if(columns, [](const Column* column) { return column->in_summary == nothing; });
-  // summary.json lists areas before displacements; this order predates the table.
-  const auto at = [&](std::string_view name) { return std::ranges::find(columns, name, &Column::name); };
-  std::rotate(at("vml_displacement_um"), at("vml_apical_area_ratio"), at("peak_speed_ratio"));
-  return columns;
-}
-
-std::vector<std::pair<const Column*, std::optional<double>>> summary_values(const ColumnList& columns,
-                                                                            std::span<const Observation> rows) {
-  std::vector<std::pair<const Column*, std::optional<double>>> values;
-  for (const Column* column : summary_columns(columns))
-    values.emplace_back(column, column->of_run ? column->of_run(rows) : reduced(*column, rows));
-  return values;
 }
 
 }  // namespace plica

@@ -34,8 +34,8 @@ std::string step_table() {
       "variable: last, largest, smallest, sum, or of the whole run.\n\n"
       "| variable | set | value | meaning |\n|---|---|---|---|\n";
   for (const Column& column : columns())
-    text += fmt::format("| `{}` | {} | {}{}{} | {} |\n", column.name, column.set, column.in_series ? "series" : "",
-                        column.in_series && column.in_summary != InSummary::nothing ? ", " : "", in_summary(column),
+    text += fmt::format("| `{}` | {} | {}{}{} | {} |\n", column.name, column.set, column.of_step ? "series" : "",
+                        column.of_step && column.in_summary != InSummary::nothing ? ", " : "", in_summary(column),
                         column.meaning);
   return text;
 }

@@ -1,6 +1,7 @@
 // Writer of the part of VTK's XML format that plica needs: one piece, hexahedra or polygons, a few number types, data
-// in base64 within their arrays, compressed. VTK's own writer takes three times as long per snapshot. (Appended data are
-// no shorter, and meshio mistakes their ends in some files.) Tests read the files back with VTK, ParaView and meshio.
+// in base64 within their arrays, compressed. VTK's own writer takes three times as long per snapshot. (Appended data
+// are no shorter, and meshio mistakes their ends in some files.) Tests read the files back with VTK, ParaView and
+// meshio.
 #include "record/mesh_writer.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,6 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "core/base64.hpp"
 #include "core/files.hpp"
 #include "core/markup.hpp"
 #include "record/deflate.hpp"

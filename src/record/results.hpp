@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "core/files.hpp"
+
 namespace plica {
 
 /// Table of numbers with named columns, as series.csv. Empty fields are missing values.
@@ -21,8 +23,9 @@ struct Series {
   [[nodiscard]] std::optional<double> at(std::size_t column, double time_s) const;
 };
 
-/// Read a time series. Throws FileError for an unreadable file or a table whose first column is not time_s.
-Series read_series(const std::filesystem::path& file);
+/// Read a time series. Throws FileError for an unreadable file, one larger than `most_bytes`, or a table whose first
+/// column is not time_s.
+Series read_series(const std::filesystem::path& file, std::uintmax_t most_bytes = largest_file_read_bytes);
 
 /// Read summary.json; null if missing. Throws FileError for damaged content.
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory);

@@ -1,6 +1,4 @@
 // Files of experiments, their quantities as formulas, and what is judged of them.
-#include "experiments/judgement.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 

@@ -49,23 +49,18 @@ inline void expect_resumable_through_a_division(const Extension& extension,
   const std::vector<std::string> overrides = {also, "division.floor.at_min=0.1", "division.floor.growth_min=0.2",
                                               "time.end_min=0.4", "time.integrator=\"bdf2\""};
   const auto fresh = [&] { return Simulation(extended(extension, overrides, "drosophila-division")); };
-  struct Kept {
-    RunMemory memory;
-    Observation measures;
-  };
-  std::vector<Kept> steps;
+  std::vector<RunMemory> steps;
   Simulation whole = fresh();
-  while (whole.step()) steps.push_back({whole.memory(), whole.measures()});
+  while (whole.step()) steps.push_back(whole.memory());
   ASSERT_EQ(whole.status(), RunStatus::end_time) << whole.failure();
   ASSERT_GT(whole.divisions(), 0);
   int resumed = 0;
   for (std::size_t k = 0; k < steps.size(); k += 7, ++resumed) {
     SCOPED_TRACE(testing::Message() << "from step " << k + 1 << " of " << steps.size());
-    Checkpoint checkpoint{"", "", "", steps[k].memory, {}};
-    checkpoint.record.rows.push_back(steps[k].measures);
+    Checkpoint checkpoint{"", "", "", steps[k], {}};
     if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
     Simulation rest = fresh();
-    rest.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+    rest.go_on_from(std::move(checkpoint.run));
     EXPECT_EQ(rest.run(), whole.status());
     EXPECT_EQ(rest.steps(), whole.steps());
     EXPECT_EQ(rest.state().positions, whole.state().positions);

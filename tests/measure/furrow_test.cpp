@@ -14,7 +14,7 @@
 #include "measure/columns.hpp"
 #include "measure/measure_set.hpp"
 #include "measure/observation.hpp"
-#include "record/series_rows.hpp"
+#include "record/csv.hpp"
 #include "record/summary.hpp"
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
@@ -289,8 +289,6 @@ TEST(Columns, EachIsOfAStepOrOfTheRunAndGoesSomewhere) {
     const bool of_run = column.in_summary == InSummary::whole_run;
     EXPECT_EQ(static_cast<bool>(column.of_run), of_run) << column.name;
     EXPECT_EQ(static_cast<bool>(column.of_step), !of_run) << column.name;
-    EXPECT_TRUE(column.in_series || column.in_summary != InSummary::nothing) << column.name;
-    EXPECT_FALSE(column.in_series && of_run) << column.name;
   }
   EXPECT_EQ(column_index("time_s"), 0U);
   EXPECT_THROW((void)column_index("no such column"), std::logic_error);
@@ -317,12 +315,7 @@ std::vector<Observation> three_rows() {
 
 TEST(Columns, TheSummaryHasWhatTheRowSays) {
   const std::vector<Observation> rows = three_rows();
-  const auto value = [&](std::string_view name) {
-    for (const auto& [column, found] : summary_values(all_columns(), rows))
-      if (column->name == name) return found;
-    ADD_FAILURE() << name;
-    return std::optional<double>();
-  };
+  const auto value = [&](std::string_view name) { return summary_value(columns()[column_index(name)], rows); };
   EXPECT_EQ(value("furrow_depth_um"), 3);
   EXPECT_EQ(value("max_volume_error"), 3e-10);
   EXPECT_EQ(value("min_scaled_jacobian"), 0.7);
@@ -334,15 +327,14 @@ TEST(Columns, TheSummaryHasWhatTheRowSays) {
 
 // Programs read these files: a column may be added, but none moved.
 TEST(Columns, ThoseOfTheContractStayInTheirOrder) {
-  std::string summary;
-  for (const Column* column : summary_columns(all_columns())) summary += std::string(column->name) + ' ';
-  EXPECT_TRUE(summary.starts_with(
-      "furrow_depth_um furrow_depth_below_lips_um lip_distance_um highest_points_distance_um vml_apical_area_ratio "
-      "vce_apical_area_ratio vml_displacement_um vce_displacement_um peak_speed_ratio peak_speed_ratio_time_s "
-      "ends_lead_until_s vml_displacement_at_equal_speed_um vce_displacement_at_equal_speed_um max_node_speed_um_per_s "
-      "max_volume_error max_shell_penetration_um min_scaled_jacobian lumen_volume_ratio newton_iterations "
-      "linear_iterations "))
-      << summary;
+  std::string names;
+  for (const Column& column : columns()) names += std::string(column.name) + ' ';
+  EXPECT_TRUE(names.starts_with(
+      "time_s furrow_depth_um furrow_depth_below_lips_um lip_distance_um vml_speed_um_per_s vce_speed_um_per_s "
+      "speed_ratio vml_displacement_um vce_displacement_um vml_apical_area_ratio vce_apical_area_ratio "
+      "max_node_speed_um_per_s max_volume_error lumen_volume_ratio cells step_s newton_iterations linear_iterations "
+      "self_intersections refused_steps vml_height_um min_apical_area_ratio "))
+      << names;
   EXPECT_EQ(names_of(lineage_columns()), (std::vector<std::string>{"cell_id", "mother_id", "generation", "birth_s"}));
 }
 
@@ -381,13 +373,13 @@ TEST(MeasureSets, NoColumnIsEmpty) {
     std::vector<Observation> rows = {simulation.measures()};
     for (int step = 0; step < 3 && simulation.step(); ++step) rows.push_back(simulation.measures());
     for (const Column* column : simulation.observer().columns())
-      if (column->in_series) {
+      if (column->of_step) {
         EXPECT_TRUE(rows.back()[*column]) << column->name;
       }
     const std::vector<std::string> names = series_header(simulation.observer());
     EXPECT_TRUE(std::ranges::none_of(names, [](const std::string& name) { return name.starts_with("v"); }));
-    for (const auto& [column, value] : summary_values(simulation.observer().columns(), rows))
-      EXPECT_TRUE(value || column->name.ends_with("_time_s")) << column->name;
+    for (const Column* column : simulation.observer().columns())
+      EXPECT_TRUE(summary_value(*column, rows) || column->name.ends_with("_time_s")) << column->name;
     EXPECT_EQ(make_summary(scenario, simulation, rows, {}).contains("vml_height_um"), false);
   }
 }
@@ -415,7 +407,10 @@ TEST(MeasureSets, OneThatDoesNotFitIsAnErrorWithARemedy) {
   };
   EXPECT_NE(refusal("[measure]\nsets = [\"lumen\"]\n").find("measure.sets: \"lumen\" has nothing to measure"),
             std::string::npos);
-  EXPECT_NE(refusal("[measure]\nsets = [\"furow\"]\n").find("automatic | fold | furrow"), std::string::npos);
+  const std::string misspelt = refusal("[measure]\nsets = [\"fold\", \"furow\"]\n");
+  EXPECT_NE(misspelt.find("automatic | fold | furrow"), std::string::npos);
+  EXPECT_NE(misspelt.find("\"furow\" is unknown"), std::string::npos) << misspelt;
+  EXPECT_NE(misspelt.find("(nearest match: \"furrow\")"), std::string::npos) << misspelt;
   const std::string expectation = "[expect]\nlip_distance_um = { value = 3, within = 1 }\n";
   EXPECT_NE(refusal(expectation).find("expect.lip_distance_um: is not measured; add \"furrow\" to measure.sets"),
             std::string::npos);

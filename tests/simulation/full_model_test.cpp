@@ -234,14 +234,13 @@ TEST(FullModel, ACrossingOfThePlaneIsSeen) {
 TEST(FullModel, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
   const Scenario scenario = scenario_of(furrow, {planes[1], "enclosed.yolk.volume=compliant", compliant});
   std::optional<RunMemory> kept;
-  Observation measures;
   std::optional<Simulation> fork;
   const auto run = [&](int threads) {
     const ThreadCount so_many(threads);
     Simulation simulation(scenario);
     while (simulation.step())
       if (simulation.steps() == 9) {
-        kept = simulation.memory(), measures = simulation.measures();
+        kept = simulation.memory();
         fork.emplace(simulation);
       }
     return simulation;
@@ -253,10 +252,9 @@ TEST(FullModel, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
   ASSERT_TRUE(kept);
 
   Checkpoint checkpoint{"", "", "", *kept, {}};
-  checkpoint.record.rows.push_back(measures);
   if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
   Simulation resumed(scenario);
-  resumed.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  resumed.go_on_from(std::move(checkpoint.run));
   for (Simulation* rest : {&resumed, &*fork}) {
     EXPECT_EQ(rest->run(), whole.status());
     EXPECT_EQ(rest->steps(), whole.steps());
@@ -268,7 +266,7 @@ TEST(FullModel, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
 
   RunMemory of_another = *kept;
   of_another.whole_internals.clear();
-  EXPECT_THROW(Simulation(scenario).go_on_from(of_another, measures), UnfitMemory);
+  EXPECT_THROW(Simulation(scenario).go_on_from(of_another), UnfitMemory);
 }
 
 constexpr double length = 40, width = 60;
@@ -354,10 +352,9 @@ at_equilibrium = false
   Simulation whole(scenario);
   for (int step = 0; step < 5; ++step) ASSERT_TRUE(whole.step()) << whole.failure();
   Checkpoint checkpoint{"", "", "", whole.memory(), {}};
-  checkpoint.record.rows.push_back(whole.measures());
   if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
   Simulation resumed(scenario), fork = whole;
-  resumed.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  resumed.go_on_from(std::move(checkpoint.run));
   ASSERT_EQ(whole.run(), RunStatus::end_time) << whole.failure();
   ASSERT_EQ(resumed.run(), RunStatus::end_time) << resumed.failure();
   const ThreadCount two(2);

@@ -9,7 +9,6 @@
 #include "core/errors.hpp"
 #include "scenario/load.hpp"
 #include "scenario/remedies.hpp"
-#include "simulation/pace.hpp"
 #include "simulation/run_warnings.hpp"
 #include "simulation/simulation.hpp"
 #include "support/named_remedies.hpp"
@@ -218,7 +217,7 @@ TEST(Pace, ARunThatCrushesItsCellsEnds) {
 
   Simulation resumed = crushed();
   ASSERT_TRUE(halfway.has_value());
-  resumed.go_on_from(*halfway, run.measures());
+  resumed.go_on_from(*halfway);
   resumed.run();
   EXPECT_EQ(resumed.failure(), run.failure());
   EXPECT_EQ(resumed.state().positions, run.state().positions);
