@@ -14,7 +14,7 @@
 #include "core/units.hpp"
 #include "core/words.hpp"
 #include "record/archive.hpp"
-#include "record/run_scenario.hpp"
+#include "record/results.hpp"
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"
 #include "show/report.hpp"

@@ -10,7 +10,6 @@
 #include "measure/closing.hpp"
 #include "measure/measure_set.hpp"
 #include "measure/observation.hpp"
-#include "measure/speed_history.hpp"
 #include "tissue/facing.hpp"
 #include "tissue/polygon_cell.hpp"
 

@@ -14,7 +14,6 @@
 
 #include "core/files.hpp"
 #include "core/markup.hpp"
-#include "record/deflate.hpp"
 
 namespace plica {
 namespace {

@@ -7,7 +7,6 @@
 #include "record/archive.hpp"
 #include "record/results.hpp"
 #include "record/run_directory.hpp"
-#include "record/run_scenario.hpp"
 #include "scenario/print.hpp"
 #include "show/report.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "core/errors.hpp"
 #include "core/markup.hpp"
-#include "record/deflate.hpp"
 
 namespace plica {
 namespace {

@@ -12,7 +12,6 @@
 #include "mechanics/division.hpp"
 #include "mechanics/model.hpp"
 #include "simulation/controls.hpp"
-#include "simulation/step_length.hpp"
 
 namespace plica {
 

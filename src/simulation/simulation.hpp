@@ -14,7 +14,6 @@
 #include "simulation/controls.hpp"
 #include "simulation/full_model.hpp"
 #include "simulation/run_memory.hpp"
-#include "simulation/step_length.hpp"
 
 namespace plica {
 

@@ -20,6 +20,7 @@
 #include "core/child_process.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/markup.hpp"
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "core/threads.hpp"

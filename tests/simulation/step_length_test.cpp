@@ -1,9 +1,9 @@
-#include "simulation/step_length.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "simulation/controls.hpp"
 
 namespace plica {
 namespace {

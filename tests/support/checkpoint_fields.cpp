@@ -54,8 +54,9 @@ struct Fields {
     const auto& [state, measures, steps, divisions, equilibrium_time_s, at_equilibrium, wanted_step_s, pace,
                  computing_s, energies, past_divisions, whole_internals, outside_arrays] = run;
     take_state(state);
-    const auto& [values, monitors, criteria_met, is_over] = measures;
-    take("measures", values), take("monitors", monitors), take("criteria_met", criteria_met), take("is_over", is_over);
+    const auto& [measured, monitors, criteria_met, is_over] = measures;
+    take("measures", measured), take("monitors", monitors), take("criteria_met", criteria_met),
+        take("is_over", is_over);
     take("steps", steps), take("divisions", divisions), take("equilibrium_time_s", equilibrium_time_s);
     take("at_equilibrium", at_equilibrium);
     take("wanted_step_s", wanted_step_s), take("computing_s", computing_s);
