@@ -26,8 +26,7 @@ std::string with_checksum(std::string_view image) {
 void check(const Checkpoint& checkpoint) {
   for (const Vec3& position : checkpoint.run.state.positions) require(position.allFinite());
   require(std::isfinite(checkpoint.run.state.time_s));
-  require(!checkpoint.record.rows.empty());
-  for (const Observation& row : checkpoint.record.rows) require(std::isfinite(row.time_s()));
+  require(fits_columns(checkpoint.run.measures));
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 #include "core/version.hpp"
 #include "errors.hpp"
 #include "record/checkpoint.hpp"
-#include "record/run_scenario.hpp"
+#include "record/results.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/builtin.hpp"
 #include "scenario/default_shell.hpp"

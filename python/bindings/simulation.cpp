@@ -39,7 +39,7 @@ nb::dict measures(const Simulation& simulation) {
     result[name] = value ? nb::cast(*value) : nb::none();
   };
   for (const Column* column : simulation.observer().columns())
-    if (column->in_series) put(std::string(column->name).c_str(), row[*column]);
+    if (column->of_step) put(std::string(column->name).c_str(), row[*column]);
   const std::vector<Monitor>& monitors = simulation.observer().monitors();
   for (std::size_t m = 0; m < row.monitors.size(); ++m) put(monitors[m].column().c_str(), row.monitors[m]);
   return result;
@@ -146,10 +146,9 @@ SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, const n
   if (checkpoint.at_rest != at_rest_)
     throw FileError(
         "the saved state belongs to another tissue; load it with the mesh or tissue that it was saved with");
-  if (checkpoint.record.rows.empty()) throw FileError("the saved state has no output variables");
   try {
     const SafeThreadCount count(threads_);
-    simulation_->go_on_from(std::move(checkpoint.run), std::move(checkpoint.record.rows.back()));
+    simulation_->go_on_from(std::move(checkpoint.run));
   } catch (const UnfitMemory& error) {
     throw FileError(std::string("the saved state is damaged: ") + error.what());
   }
@@ -188,9 +187,8 @@ void SimulationOf::set_cell_array(const std::string& name, std::vector<double> v
 
 nb::bytes SimulationOf::save() {
   const Turn turn(*this);
-  Checkpoint checkpoint{version(), resolved_toml(scenario_->scenario), at_rest_, simulation_->memory(), {}};
-  checkpoint.record.rows.push_back(simulation_->measures());
-  const std::string bytes = checkpoint_bytes(checkpoint);
+  const std::string bytes =
+      checkpoint_bytes({version(), resolved_toml(scenario_->scenario), at_rest_, simulation_->memory(), {}});
   return nb::bytes(bytes.data(), bytes.size());
 }
 

@@ -1,110 +1,58 @@
 #include "core/background.hpp"
 
-#include <pthread.h>
-
 #include <ctime>
+#include <shared_mutex>
 #include <system_error>
 #include <utility>
 
 #include "core/child_process.hpp"
 
 namespace plica {
+namespace {
 
-Background::Background(std::size_t most_waiting) : most_waiting_(most_waiting) {
-  try {
-    thread_ = std::thread([this] { work(); });
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return started_; });
-  } catch (const std::system_error&) {
-    // No thread is available: jobs run immediately.
-  }
-}
-
-Background::~Background() {
-  if (!thread_.joinable()) return;
-  {
-    const std::lock_guard lock(mutex_);
-    ending_ = true;
-  }
-  changed_.notify_all();
-  thread_.join();
-}
-
-void Background::add(std::function<void()> job) {
-  if (!thread_.joinable()) {
-    if (std::exchange(failed_, true)) return;
-    job();
-    failed_ = false;
-    return;
-  }
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return waiting_.size() < most_waiting_ || failed_; });
-  throw_fault(lock);
-  if (failed_) return;
-  waiting_.push_back(std::move(job));
-  changed_.notify_all();
-}
-
-bool Background::has_failed() const {
-  const std::lock_guard lock(mutex_);
-  return fault_ != nullptr;
-}
-
-void Background::check() {
-  std::unique_lock lock(mutex_);
-  throw_fault(lock);
-}
-
-void Background::finish() {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return waiting_.empty() && !at_work_; });
-  throw_fault(lock);
-}
-
-double Background::processor_s() {
-  clockid_t clock{};
+double processor_s_of_this_thread() {
   timespec time{};
-  if (!thread_.joinable() || ::pthread_getcpuclockid(thread_.native_handle(), &clock) != 0 ||
-      ::clock_gettime(clock, &time) != 0)
-    return 0;
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-void Background::throw_fault(std::unique_lock<std::mutex>& lock) {
-  const std::exception_ptr fault = std::exchange(fault_, nullptr);
-  if (!fault) return;
-  lock.unlock();
-  std::rethrow_exception(fault);
+}  // namespace
+
+Background::~Background() {
+  if (last_.valid()) last_.wait();
 }
 
-void Background::work() {
-  std::unique_lock lock(mutex_);
-  started_ = true;
-  changed_.notify_all();
-  while (true) {
-    changed_.wait(lock, [&] { return !waiting_.empty() || ending_; });
-    if (waiting_.empty()) return;
-    const std::shared_lock busy(work_beside());
-    std::function<void()> job = std::exchange(waiting_.front(), {});
-    waiting_.pop_front();
-    at_work_ = true;
-    lock.unlock();
-    std::exception_ptr fault;
-    try {
-      job();
-    } catch (...) {
-      fault = std::current_exception();
-    }
-    job = {};  // free its memory before taking the next
-    lock.lock();
-    at_work_ = false;
-    if (fault) {
-      fault_ = fault;
-      failed_ = true;
-      waiting_.clear();
-    }
-    changed_.notify_all();
+void Background::add(std::function<void()> job) {
+  if (has_failed()) finish();
+  if (is_told_) return;
+  try {
+    last_ = std::async(std::launch::async, [this, before = last_, job] {
+              work(before, job);
+              processor_s_ = processor_s_ + processor_s_of_this_thread();
+            }).share();
+  } catch (const std::system_error&) {  // no thread is available
+    finish();
+    is_told_ = true;  // if the job throws
+    job();
+    is_told_ = false;
   }
+}
+
+void Background::finish() {
+  const std::shared_future<void> last = std::exchange(last_, {});
+  if (!last.valid()) return;
+  last.wait();
+  is_told_ = has_failed_;
+  last.get();
+}
+
+void Background::work(const std::shared_future<void>& before, const std::function<void()>& job) try {
+  if (before.valid()) before.get();
+  const std::shared_lock busy(work_beside());
+  job();
+} catch (...) {
+  has_failed_ = true;
+  throw;
 }
 
 }  // namespace plica

@@ -13,6 +13,7 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <limits>
 #include <mutex>
 #include <string_view>
 #include <system_error>
@@ -148,13 +149,7 @@ int become(const std::vector<std::string>& words, int input, int output, int err
 CommandResult run_command(const std::vector<std::string>& words) {
   ChildProcess child([&](int end) { return become(words, ::open("/dev/null", O_RDONLY), end, end); });
   CommandResult result;
-  std::array<char, 4096> block{};
-  while (true) {
-    const ssize_t count = ::read(child.end(), block.data(), block.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    result.output.append(block.data(), static_cast<std::size_t>(count));
-  }
+  result.output = read_all(child.end(), child.id(), std::numeric_limits<double>::infinity()).output.value_or("");
   const int waited = child.wait();
   if (WIFEXITED(waited) && WEXITSTATUS(waited) < 126) result.status = WEXITSTATUS(waited);
   return result;

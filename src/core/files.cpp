@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -180,30 +181,11 @@ RowFile::RowFile(fs::path path, std::uint64_t keep_bytes) : path_(std::move(path
   else if (S_ISREG(status.st_mode) && ::ftruncate(descriptor_, static_cast<off_t>(keep_bytes)) != 0)
     why = reason(errno);
   if (why.empty()) return;
-  close();
+  ::close(descriptor_);
   throw_unwritten(path_, why);
 }
 
-RowFile::RowFile(RowFile&& other) noexcept
-    : path_(std::move(other.path_)),
-      descriptor_(std::exchange(other.descriptor_, -1)),
-      size_bytes_(std::exchange(other.size_bytes_, 0)) {}
-
-RowFile& RowFile::operator=(RowFile&& other) noexcept {
-  if (this == &other) return *this;
-  close();
-  path_ = std::move(other.path_);
-  descriptor_ = std::exchange(other.descriptor_, -1);
-  size_bytes_ = std::exchange(other.size_bytes_, 0);
-  return *this;
-}
-
-RowFile::~RowFile() { close(); }
-
-void RowFile::close() noexcept {
-  if (descriptor_ >= 0) ::close(descriptor_);
-  descriptor_ = -1;
-}
+RowFile::~RowFile() { ::close(descriptor_); }
 
 void RowFile::append(std::string_view row) {
   std::string line;
@@ -221,6 +203,16 @@ void RowFile::append(std::string_view row) {
 void RowFile::sync() {
   const int error = sync_descriptor(descriptor_);
   if (error != 0) throw_unwritten(path_, reason(error));
+}
+
+DirectoryLock::DirectoryLock(const fs::path& directory) : descriptor_(open_file(directory, O_RDONLY | O_DIRECTORY)) {
+  if (descriptor_ < 0 || ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  ::close(descriptor_);
+  throw FileError(directory.string() + ": another process of plica is writing into it; wait until it ends");
+}
+
+DirectoryLock::~DirectoryLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 }  // namespace plica

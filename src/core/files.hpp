@@ -1,5 +1,5 @@
-// Files written atomically, and files that grow by complete rows. Any failure (full disk, missing folder, permission)
-// throws FileError `PATH: cannot be written: REASON`, at the latest when the file is closed.
+// Files written atomically, files that grow by complete rows, and locks of directories. Any failure (full disk, missing
+// folder, permission) throws FileError `PATH: cannot be written: REASON`, at the latest when the file is closed.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +38,8 @@ class RowFile {
   /// Open or create the file (not its folder) and truncate it to `keep_bytes`: 0, or the `size_bytes()` of a checkpoint
   /// to continue from. Throws FileError, also if the file is shorter or these bytes do not end with a complete row.
   explicit RowFile(std::filesystem::path path, std::uint64_t keep_bytes = 0);
-  RowFile(RowFile&& other) noexcept;
-  RowFile& operator=(RowFile&& other) noexcept;
+  RowFile(const RowFile&) = delete;
+  RowFile& operator=(const RowFile&) = delete;
   ~RowFile();
 
   /// Append the row (or several, joined by '\n') and '\n' in one write. Throws FileError, for example if the disk is
@@ -52,11 +52,23 @@ class RowFile {
   [[nodiscard]] std::uint64_t size_bytes() const { return size_bytes_; }
 
  private:
-  void close() noexcept;
-
   std::filesystem::path path_;
   int descriptor_ = -1;
   std::uint64_t size_bytes_ = 0;
+};
+
+/// Lock that lets one process at a time write into a directory, released by the destructor or, however the process
+/// ends, by the system. Does nothing if the directory does not exist or its file system has no locks.
+class DirectoryLock {
+ public:
+  /// Throws FileError if another process holds the lock.
+  explicit DirectoryLock(const std::filesystem::path& directory);
+  DirectoryLock(const DirectoryLock&) = delete;
+  DirectoryLock& operator=(const DirectoryLock&) = delete;
+  ~DirectoryLock();
+
+ private:
+  int descriptor_;
 };
 
 }  // namespace plica

@@ -3,7 +3,9 @@
 
 #include <omp.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdlib>
 
 namespace plica {
 
@@ -21,6 +23,11 @@ class ThreadCount {
 
 /// Number of threads to use: `asked` if above 0; else OMP_NUM_THREADS; else one per 5000 elements, up to the processors
 /// of the machine.
-int threads_for(int asked, std::size_t elements);
+inline int threads_for(int asked, std::size_t elements) {
+  if (asked > 0) return asked;
+  if (std::getenv("OMP_NUM_THREADS") != nullptr) return omp_get_max_threads();
+  constexpr std::size_t elements_a_thread = 5000;
+  return static_cast<int>(std::min<std::size_t>(omp_get_num_procs(), 1 + elements / elements_a_thread));
+}
 
 }  // namespace plica

@@ -148,24 +148,18 @@ class FormulaParser {
   Part sum() {
     Part left = product();
     while (true) {
-      if (take('+'))
-        left = of({left, product()}, [](const auto& v) { return v[0] + v[1]; });
-      else if (take('-'))
-        left = of({left, product()}, [](const auto& v) { return v[0] - v[1]; });
-      else
-        return left;
+      const bool adds = take('+');
+      if (!adds && !take('-')) return left;
+      left = of({left, product()}, [adds](const auto& v) { return adds ? v[0] + v[1] : v[0] - v[1]; });
     }
   }
 
   Part product() {
     Part left = factor();
     while (true) {
-      if (take('*'))
-        left = of({left, factor()}, [](const auto& v) { return v[0] * v[1]; });
-      else if (take('/'))
-        left = of({left, factor()}, [](const auto& v) { return v[0] / v[1]; });
-      else
-        return left;
+      const bool multiplies = take('*');
+      if (!multiplies && !take('/')) return left;
+      left = of({left, factor()}, [multiplies](const auto& v) { return multiplies ? v[0] * v[1] : v[0] / v[1]; });
     }
   }
 

@@ -1,8 +1,8 @@
-#include "experiments/judgement.hpp"
-
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/beta.hpp>
+
+#include "experiments/experiments.hpp"
 
 namespace plica {
 

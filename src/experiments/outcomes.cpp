@@ -102,8 +102,10 @@ std::string OutcomesTable::csv() const {
 std::string OutcomesTable::for_terminal() const {
   std::string text;
   for (const auto& row : rows) {
-    const std::string shown = row[6].empty() ? "none" : fmt::format("{:.4g}", std::stod(row[6]));
-    text += fmt::format("{:<18}  {:<34}  {:>10}  {}\n", row[14], row[0] + ", " + row[1], shown, row[5]);
+    const auto field = [&](const char* name) { return row[std::ranges::find(columns, name) - columns.begin()]; };
+    const std::string number = field("number"), name = field("experiment") + ", " + field("outcome");
+    const std::string shown = number.empty() ? "none" : fmt::format("{:.4g}", std::stod(number));
+    text += fmt::format("{:<18}  {:<34}  {:>10}  {}\n", field("verdict"), name, shown, field("criterion"));
   }
   return text;
 }

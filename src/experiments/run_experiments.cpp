@@ -11,9 +11,9 @@
 #include "core/files.hpp"
 #include "core/threads.hpp"
 #include "record/archive.hpp"
+#include "record/csv.hpp"
 #include "record/results.hpp"
 #include "record/run_directory.hpp"
-#include "record/series_rows.hpp"
 #include "scenario/differences.hpp"
 #include "scenario/print.hpp"
 #include "show/recorded_run.hpp"
@@ -40,12 +40,9 @@ void require_same_scenario(const fs::path& folder, const Scenario& scenario) {
   if (!is_there(folder / "scenario.toml")) return;
   const auto differences = scenario_differences(read_file(folder / "scenario.toml"), resolved_toml(scenario));
   if (differences.empty()) return;
-  const auto shown = [](const std::string& value) { return value.empty() ? "missing" : value; };
   throw UsageError(fmt::format(
-      "{}: was run with another scenario: {} was {} and is now {}; revert the change, remove {} to rerun it, or give "
-      "another --out",
-      folder.string(), differences.front().key, shown(differences.front().a), shown(differences.front().b),
-      folder.parent_path().string()));
+      "{}: was run with another scenario: {}; revert the change, remove {} to rerun it, or give another --out",
+      folder.string(), differences.front().text(), folder.parent_path().string()));
 }
 
 // Write the files of a run other than the first draw.

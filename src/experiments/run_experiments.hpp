@@ -17,7 +17,6 @@
 #include <vector>
 
 #include "experiments/experiments.hpp"
-#include "experiments/judgement.hpp"
 #include "study/worker_pool.hpp"
 
 namespace plica {

@@ -53,7 +53,7 @@ int elements_through_height(const Tissue& tissue) {
 
 MeasureSet bending_set() {
   return set_of("bending", "corotational elasticity", [](const Subject& s) { return kept_if(overbends(s.model)); },
-                {{"bending_error", true, InSummary::last,
+                {{"bending_error", InSummary::last,
                   "Estimated relative error of bending from few elements through the height; depth by one element may "
                   "err five times as much ([convergence](../developers/convergence.md#meshes-of-polygons)).",
                   of(bending_error)}});

@@ -211,9 +211,44 @@ std::optional<double> time_of_reaching(std::span<const double> times_s, std::spa
   return std::nullopt;
 }
 
+std::optional<double> SpeedRow::speed_ratio() const {
+  constexpr double rounding = 1e-12;  // relative to the speed of the ends: a slower centre counts as still
+  if (!vml_speed_um_per_s || !vce_speed_um_per_s || !(*vml_speed_um_per_s > rounding * *vce_speed_um_per_s))
+    return std::nullopt;
+  return *vce_speed_um_per_s / *vml_speed_um_per_s;
+}
+
+SpeedHistory speed_history(std::span<const SpeedRow> rows) {
+  SpeedHistory history;
+  double fastest_middle = 0;
+  for (const SpeedRow& row : rows) fastest_middle = std::max(fastest_middle, row.vml_speed_um_per_s.value_or(0));
+  const auto lead = [](const SpeedRow& row) { return *row.vce_speed_um_per_s - *row.vml_speed_um_per_s; };
+  std::optional<std::size_t> peak;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!rows[i].vml_speed_um_per_s || *rows[i].vml_speed_um_per_s <= 0.01 * fastest_middle) continue;
+    if (!peak || lead(rows[i]) > lead(rows[*peak])) peak = i;
+  }
+  if (!peak) return history;
+  history.peak_ratio = rows[*peak].speed_ratio();
+  history.peak_ratio_time_s = rows[*peak].time_s;
+  if (lead(rows[*peak]) <= 0) return history;  // the ends never lead
+  for (std::size_t i = *peak + 1; i < rows.size(); ++i) {
+    const double before = lead(rows[i - 1]), after = lead(rows[i]);
+    if (after > 0) continue;
+    const double part = before > 0 ? before / (before - after) : 0;
+    const auto between = [&](double a, double b) { return a + part * (b - a); };
+    history.ends_lead_until_s = between(rows[i - 1].time_s, rows[i].time_s);
+    history.vml_displacement_at_equal_speed_um =
+        between(*rows[i - 1].vml_displacement_um, *rows[i].vml_displacement_um);
+    history.vce_displacement_at_equal_speed_um =
+        between(*rows[i - 1].vce_displacement_um, *rows[i].vce_displacement_um);
+    break;
+  }
+  return history;
+}
+
 namespace {
 
-constexpr bool series = true, no_series = false;
 using enum InSummary;
 using M = MeasuredStep;
 
@@ -249,22 +284,22 @@ Flanks flanks(const Tissue& tissue, std::span<const Vec3> positions) {
 }  // namespace
 
 MeasureSet contact_set() {
-  return set_of("contact", "self_contact.surface", begin_contact,
-                {count({"contact_pairs", series, largest, "Contact pairs under pressure.",
-                        part_of(contact_of_step, &ContactState::pairs)}),
-                 {"min_contact_distance_um", series, least,
-                  "Smallest gap between facing places of a surface; negative for penetration.",
-                  [](const M& m) { return m.once(contact_of_step)->least_gap_um; }}});
+  return set_of(
+      "contact", "self_contact.surface", begin_contact,
+      {count(
+           {"contact_pairs", largest, "Contact pairs under pressure.", part_of(contact_of_step, &ContactState::pairs)}),
+       {"min_contact_distance_um", least, "Smallest gap between facing places of a surface; negative for penetration.",
+        [](const M& m) { return m.once(contact_of_step)->least_gap_um; }}});
 }
 
 MeasureSet closing_set() {
   return set_of(
       "closing", "self_contact.surface", begin_contact,
-      {{"closed_length_ratio", series, last,
+      {{"closed_length_ratio", last,
         "Fraction of the embryo's length with furrow closure: apical surfaces left and right of the midline in "
         "contact.",
         part_of(contact_of_step, &ContactState::closed_length_ratio)},
-       count({"lips_closed", series, last,
+       count({"lips_closed", last,
               "Furrow closure at x = 0: 1 if apical surfaces of both sides are in contact there, whichever cells "
               "meet.",
               part_of(contact_of_step, &ContactState::middle_is_closed)})},
@@ -272,24 +307,24 @@ MeasureSet closing_set() {
 }
 
 MeasureSet lumen_set() {
-  return set_of("lumen", "a closed basal surface", [](const Subject& s) { return kept_if(rest_lumen_volume(s)); },
-                {costly({"lumen_volume_ratio", series, last, "Volume inside the basal surface / reference volume.",
-                         lumen_ratio})});
+  return set_of(
+      "lumen", "a closed basal surface", [](const Subject& s) { return kept_if(rest_lumen_volume(s)); },
+      {costly({"lumen_volume_ratio", last, "Volume inside the basal surface / reference volume.", lumen_ratio})});
 }
 
 MeasureSet enclosed_set() {
   return set_of("enclosed", "[enclosed.NAME]",
                 [](const Subject& s) { return kept_if(enclosed(s.model, rest_state(s.model)).has_value()); },
-                {{"enclosed_volume_ratio", series, last, "Enclosed volume (yolk or lumen) / target volume.",
+                {{"enclosed_volume_ratio", last, "Enclosed volume (yolk or lumen) / target volume.",
                   part_of(enclosed_of_step, &Enclosed::volume_ratio)},
-                 {"yolk_pressure_Pa", series, last,
-                  "Pressure of the enclosed volume, relative to the perivitelline fluid.", pressure_Pa}});
+                 {"yolk_pressure_Pa", last, "Pressure of the enclosed volume, relative to the perivitelline fluid.",
+                  pressure_Pa}});
 }
 
 MeasureSet shell_set() {
   return set_of("shell", "a vitelline membrane", [](const Subject& s) { return kept_if(!s.model.obstacles.empty()); },
-                {{"max_shell_penetration_um", no_series, largest,
-                  "Largest distance of a node outside the vitelline membrane.", of(shell_penetration)}});
+                {{"max_shell_penetration_um", largest, "Largest distance of a node outside the vitelline membrane.",
+                  of(shell_penetration)}});
 }
 
 MeasureSet perivitelline_set() {
@@ -298,7 +333,7 @@ MeasureSet perivitelline_set() {
                   // The shell's caps are not those of a slice.
                   return kept_if(rest_lumen_volume(s) && fluid_under_shell_um3(s.model, s.model.tissue.rest_positions));
                 },
-                {costly({"shell_fluid_um3", series, last,
+                {costly({"shell_fluid_um3", last,
                          "Perivitelline volume, between apical surface and vitelline membrane; its pressure is 0.",
                          of(fluid_under_shell_um3)})});
 }
@@ -310,13 +345,13 @@ MeasureSet flanks_set() {
         const Flanks at_rest = flanks(s.model.tissue, s.model.tissue.rest_positions);
         return at_rest.volume_um3 > 0 && at_rest.section_um2 > 0 ? std::any(at_rest) : std::any();
       },
-      {costly({"flank_volume_ratio", series, last,
+      {costly({"flank_volume_ratio", last,
                "Volume of the lateral ectoderm / reference volume: cells at 60–120° from the ventral midline, "
                "middle half of the length, weighted by their part of the angle.",
                [](const M& m) {
                  return *flank_volume(m.model.tissue, m.state.positions) / m.of_run<Flanks>().volume_um3;
                }}),
-       costly({"flank_section_area_ratio", series, last,
+       costly({"flank_section_area_ratio", last,
                "Cross-sectional area of the lateral ectoderm at x = 0 (60–120° from the ventral midline, both "
                "sides) / reference area; comparable with micrographs and two-dimensional models.",
                [](const M& m) {

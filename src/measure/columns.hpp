@@ -11,7 +11,6 @@
 #include <string>
 #include <string_view>
 #include <typeindex>
-#include <utility>
 #include <vector>
 
 #include "core/names.hpp"
@@ -61,10 +60,9 @@ struct Column {
   using OfRun = std::function<std::optional<double>(std::span<const Observation> rows)>;
 
   std::string_view name;  // with its unit
-  bool in_series;
   InSummary in_summary;
   std::string_view meaning;   // for docs/reference/measures.md, in Markdown
-  OfStep of_step;             // value after a step; or
+  OfStep of_step;             // value after a step, in series.csv; or
   OfRun of_run = {};          // value of the whole run, for the summary
   bool is_count = false;      // integer
   bool is_costly = false;     // takes over 1 % of a step
@@ -82,14 +80,12 @@ std::size_t column_index(std::string_view name);
 
 /// Some of `columns()`, in their order.
 using ColumnList = std::vector<const Column*>;
-ColumnList all_columns();
 
-/// Those in summary.json, in its order.
-ColumnList summary_columns(ColumnList columns);
+/// Whether a row has a place for every column, and integers for counts.
+bool fits_columns(const Observation& row);
 
-/// Values of these columns in the summary from the rows of a whole run (reference state first).
-std::vector<std::pair<const Column*, std::optional<double>>> summary_values(const ColumnList& columns,
-                                                                            std::span<const Observation> rows);
+/// Value of a column in the summary from the rows of a whole run (reference state first).
+std::optional<double> summary_value(const Column& column, std::span<const Observation> rows);
 
 /// Tables of docs/reference/measures.md, in Markdown.
 std::string measures_markdown();

@@ -10,7 +10,6 @@
 #include "measure/closing.hpp"
 #include "measure/measure_set.hpp"
 #include "measure/observation.hpp"
-#include "measure/speed_history.hpp"
 #include "tissue/facing.hpp"
 #include "tissue/polygon_cell.hpp"
 
@@ -256,7 +255,6 @@ std::optional<double> midline_waviness_um(const Tissue& tissue, const FurrowSite
 
 namespace {
 
-constexpr bool series = true, no_series = false;
 using enum InSummary;
 using M = MeasuredStep;
 
@@ -310,7 +308,7 @@ SpeedHistory history_of(std::span<const Observation> rows) {
 }
 
 Column of_run(std::string_view name, std::string_view meaning, Column::OfRun value) {
-  return {name, no_series, whole_run, meaning, {}, std::move(value)};
+  return {name, whole_run, meaning, {}, std::move(value)};
 }
 
 Column of_history(std::string_view name, std::string_view meaning, std::optional<double> SpeedHistory::*number) {
@@ -333,33 +331,31 @@ double vml_height(const M& m) {
 
 std::vector<Column> columns_of_furrow() {
   return {
-      {"furrow_depth_below_lips_um", series, last,
+      {"furrow_depth_below_lips_um", last,
        "Depth of the furrow bottom (apical surface at x = y = 0) below the mean of both lips, positive inward. "
        "Negative for the convex reference shape; below 1 µm the ventral side is flat, not furrowed.",
        part_of(lips_of_step, &LipShape::depth_below_lips_um)},
-      {"lip_distance_um", series, last,
-       "Distance between the lips, which are material points. For contact, see `lips_closed`.",
+      {"lip_distance_um", last, "Distance between the lips, which are material points. For contact, see `lips_closed`.",
        part_of(lips_of_step, &LipShape::lip_distance_um)},
-      {"highest_points_distance_um", no_series, last,
+      {"highest_points_distance_um", last,
        "Distance between the outermost points left and right of the midline at x = 0 (the paper's definition); may "
        "jump.",
        part_of(lips_of_step, &LipShape::highest_points_distance_um)},
-      {"vml_speed_um_per_s", series, nothing,
+      {"vml_speed_um_per_s", nothing,
        "Speed of the barycentre (mean of eight corners) of the central midline cell (VML).",
        part_of(speeds_of_step, &SpeedRow::vml_speed_um_per_s)},
-      {"vce_speed_um_per_s", series, nothing, "Speed of the barycentre of the near-end midline cell (VCE).",
+      {"vce_speed_um_per_s", nothing, "Speed of the barycentre of the near-end midline cell (VCE).",
        part_of(speeds_of_step, &SpeedRow::vce_speed_um_per_s)},
-      {"speed_ratio", series, nothing, "Speed of VCE / speed of VML, $v_c/v_m$.",
+      {"speed_ratio", nothing, "Speed of VCE / speed of VML, $v_c/v_m$.",
        [](const M& m) { return m.once(speeds_of_step).speed_ratio(); }},
-      {"vml_displacement_um", series, last,
+      {"vml_displacement_um", last,
        "Mean displacement of the eight corner nodes of VML from the reference state (mean of lengths).",
        part_of(speeds_of_step, &SpeedRow::vml_displacement_um)},
-      {"vce_displacement_um", series, last, "Mean displacement of the corner nodes of VCE.",
+      {"vce_displacement_um", last, "Mean displacement of the corner nodes of VCE.",
        part_of(speeds_of_step, &SpeedRow::vce_displacement_um)},
-      {"vml_apical_area_ratio", series, last,
-       "Apical area of VML / reference area; bilinear facets, 2 × 2 Gauss points.",
+      {"vml_apical_area_ratio", last, "Apical area of VML / reference area; bilinear facets, 2 × 2 Gauss points.",
        [](const M& m) { return mean_apical_area_ratio(m.model.tissue, sites_of(m).vml, m.state.positions); }},
-      {"vce_apical_area_ratio", series, last, "Apical area of VCE / reference area.",
+      {"vce_apical_area_ratio", last, "Apical area of VCE / reference area.",
        [](const M& m) { return mean_apical_area_ratio(m.model.tissue, sites_of(m).vce, m.state.positions); }},
       of_history(
           "peak_speed_ratio",
@@ -374,7 +370,7 @@ std::vector<Column> columns_of_furrow() {
                  &SpeedHistory::vml_displacement_at_equal_speed_um),
       of_history("vce_displacement_at_equal_speed_um", "`vce_displacement_um` at that time.",
                  &SpeedHistory::vce_displacement_at_equal_speed_um),
-      {"vml_height_um", series, largest, "Height of VML: mean length of its apicobasal edges.", vml_height},
+      {"vml_height_um", largest, "Height of VML: mean length of its apicobasal edges.", vml_height},
       of_run("lips_closed_time_s", "First time with `lips_closed` = 1.", reaching("lips_closed", 1)),
       of_run("depth_20um_time_s", "Time at which `furrow_depth_um` reaches 20 µm.", reaching("furrow_depth_um", 20)),
       of_run(
@@ -383,7 +379,7 @@ std::vector<Column> columns_of_furrow() {
           "to 20 µm (least squares, weighted by time); none if 20 µm are not reached.",
           of_knee(&Knee::depth_um)),
       of_run("knee_time_s", "Time of the onset of fast invagination.", of_knee(&Knee::time_s)),
-      {"midline_waviness_um", series, last,
+      {"midline_waviness_um", last,
        "Waviness (buckling) of the furrow bottom along its length: root-mean-square deviation of the depths of "
        "contractile midline cells, middle half, from a quartic polynomial. None with fewer than ten cells.",
        [](const M& m) { return midline_waviness_um(m.model.tissue, sites_of(m), m.state.positions); }},
@@ -409,7 +405,7 @@ MeasureSet fold_set() {
   return {"fold",
           "contracting cells on the plane y = 0",
           begin_sites,
-          {{"furrow_depth_um", series, last,
+          {{"furrow_depth_um", last,
             "Furrow depth: largest inward distance from the vitelline membrane over the apical midline (plane y = 0) "
             "of the furrow cells, without the middles of polygons, minus the reference value of the same material "
             "point. Inward: against the mean reference apical normal of these cells. Without an embryo shape: inward "

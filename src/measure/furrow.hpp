@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "measure/surface_cut.hpp"
+#include "measure/cross_section.hpp"
 #include "mechanics/model.hpp"
 #include "tissue/division.hpp"
 

@@ -38,6 +38,9 @@ struct Observation {
   [[nodiscard]] std::optional<double> operator[](const Column& column) const {
     return values[static_cast<std::size_t>(&column - columns().data())];
   }
+  std::optional<double>& operator[](const Column& column) {
+    return values[static_cast<std::size_t>(&column - columns().data())];
+  }
   [[nodiscard]] double time_s() const { return (*this)["time_s"].value_or(0); }
 };
 
@@ -52,10 +55,8 @@ struct Watch {
 class Observer {
  public:
   explicit Observer(const Model& model, Watch watch = {});
-  /// Measure a step. `wall_s`: computing time of all steps so far, for the monitor of that name.
-  [[nodiscard]] Observation observe(const Model& model, const AcceptedStep& step, double wall_s = 0) const;
-  /// Measure the reference state, before the first step.
-  [[nodiscard]] Observation observe_rest(const Model& model, const State& state) const;
+  /// Measure the end of a step; null: the reference state, before the first.
+  [[nodiscard]] Observation observe(const Moment& moment, const AcceptedStep* step) const;
   [[nodiscard]] const std::vector<Monitor>& monitors() const { return watch_.monitors; }
   /// Columns that are measured.
   [[nodiscard]] const ColumnList& columns() const { return columns_; }
@@ -75,8 +76,6 @@ class Observer {
   void follow_division(const Tissue& tissue, const Division& division);
 
  private:
-  [[nodiscard]] Observation row_of(const Moment& moment, const AcceptedStep* step) const;
-
   Watch watch_;
   ColumnList columns_;
 };

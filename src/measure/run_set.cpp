@@ -10,7 +10,6 @@
 namespace plica {
 namespace {
 
-constexpr bool series = true, no_series = false;
 using enum InSummary;
 using M = MeasuredStep;
 
@@ -37,59 +36,55 @@ std::optional<double> first_self_intersection(std::span<const Observation> rows)
 
 std::vector<Column> columns_of_every_run() {
   return {
-      {"time_s", series, nothing, "Time at the end of the step; 0 in the reference state.",
+      {"time_s", nothing, "Time at the end of the step; 0 in the reference state.",
        [](const M& m) { return m.state.time_s; }},
-      {"max_node_speed_um_per_s", series, last, "Largest speed of a node; decides equilibrium.",
+      {"max_node_speed_um_per_s", last, "Largest speed of a node; decides equilibrium.",
        [](const M& m) { return m.step != nullptr ? m.step->max_node_speed_um_per_s : 0; }},
-      {"max_volume_error", series, largest, "Largest relative volume error of a cell, $\\lvert V/V_{target}-1\\rvert$.",
+      {"max_volume_error", largest, "Largest relative volume error of a cell, $\\lvert V/V_{target}-1\\rvert$.",
        of(max_volume_error)},
-      costly({"min_scaled_jacobian", no_series, least,
+      costly({"min_scaled_jacobian", least,
               "Smallest scaled Jacobian of an element corner: 1 for a cuboid, <= 0 if inverted.",
               [](const M& m) { return min_scaled_jacobian(m.model.tissue, m.state.positions); }}),
-      count({"cells", series, nothing, "Number of cells, before divisions due at the end of the step.",
+      count({"cells", nothing, "Number of cells, before divisions due at the end of the step.",
              [](const M& m) { return static_cast<double>(m.model.tissue.cells.size()); }}),
-      {"step_s", series, nothing, "Length of the time step; 0 in the reference state.",
+      {"step_s", nothing, "Length of the time step; 0 in the reference state.",
        [](const M& m) { return m.step != nullptr ? m.step->duration_s : 0; }},
-      count({"newton_iterations", series, sum, "Newton iterations, including rejected steps.",
+      count({"newton_iterations", sum, "Newton iterations, including rejected steps.",
              reported(&StepReport::newton_iterations)}),
-      count({"linear_iterations", series, sum,
-             "Linear solves (Newton), or conjugate-gradient iterations (linearly implicit).",
+      count({"linear_iterations", sum, "Linear solves (Newton), or conjugate-gradient iterations (linearly implicit).",
              reported(&StepReport::linear_solves)}),
-      costly(count({"self_intersections", series, largest,
+      costly(count({"self_intersections", largest,
                     "Pairs of apical or of basal facets that cross (self-intersection). Only `[self_contact]` prevents "
                     "it; results after the first are unphysical.",
                     of(self_intersections)})),
-      count({"refused_steps", series, sum, "Rejected steps: longer attempts before this step was accepted.",
+      count({"refused_steps", sum, "Rejected steps: longer attempts before this step was accepted.",
              reported(&StepReport::refused)}),
-      costly({"min_apical_area_ratio", series, least, "Smallest apical area / reference area of a cell.",
+      costly({"min_apical_area_ratio", least, "Smallest apical area / reference area of a cell.",
               of(min_apical_area_ratio)}),
-      costly({"min_corner_jacobian_ratio", series, least,
-              "Smallest corner Jacobian / reference value: 0 for a flat corner.",
+      costly({"min_corner_jacobian_ratio", least, "Smallest corner Jacobian / reference value: 0 for a flat corner.",
               [](const M& m) { return least_corner_ratio(m.model.tissue, m.state.positions).ratio; }}),
-      {"active_work_nN_um", series, last,
+      {"active_work_nN_um", last,
        "Active work so far: by tensions and contractions, imposed stiffening, applied pressures "
        "([energy](../theory/energy.md)). 1 nN µm = 1 fJ.",
        energy(&EnergyFlow::active)},
-      {"stored_energy_nN_um", series, last, "Elastic energy stored since the start.", energy(&EnergyFlow::stored)},
-      {"dissipated_energy_nN_um", series, last,
+      {"stored_energy_nN_um", last, "Elastic energy stored since the start.", energy(&EnergyFlow::stored)},
+      {"dissipated_energy_nN_um", last,
        "Energy dissipated so far: drag, viscosity, relaxation of stress-free shapes, imposed softening, contact "
        "changes.",
        energy(&EnergyFlow::dissipated)},
-      {"energy_imbalance_ratio", series, last,
+      {"energy_imbalance_ratio", last,
        "(Active work − stored − dissipated) / active work: a defect of finite time steps, of either sign, not a bound "
        "on their error ([energy](../theory/energy.md)). None without active work.",
        energy_imbalance},
-      costly(count({"short_edges", series, largest,
+      costly(count({"short_edges", largest,
                     "Apical cell edges shorter than 10 % of their reference length; a tissue would exchange neighbours "
                     "(T1) there, plica does not.",
                     of(short_edges)})),
-      {"max_displacement_um", series, last, "Largest distance of a node from its reference position.",
-       of(max_displacement)},
-      {"mean_height_um", series, last, "Mean height of all cells.", of(mean_height)},
-      costly({"tissue_volume_ratio", series, last, "Volume of all cells / reference volume.",
+      {"max_displacement_um", last, "Largest distance of a node from its reference position.", of(max_displacement)},
+      {"mean_height_um", last, "Mean height of all cells.", of(mean_height)},
+      costly({"tissue_volume_ratio", last, "Volume of all cells / reference volume.",
               [](const M& m) { return tissue_volume(m.model, m.state.positions) / m.of_run<double>(); }}),
       {"self_intersections_time_s",
-       no_series,
        whole_run,
        "First time with `self_intersections` > 0.",
        {},
@@ -106,14 +101,13 @@ MeasureSet run_set() {
 }
 
 MeasureSet projection_set() {
-  return set_of("projection", "volume.method = \"projection\"", [](const Subject& s) { return kept_if(s.projects); },
-                {count({"projection_sweeps", no_series, sum,
-                        "Sweeps of the projection ([paper algorithm](../theory/paper_algorithm.md)).",
-                        reported(&StepReport::projection_sweeps)}),
-                 count({"cubic_solves", no_series, sum, "Cubic equations solved in these sweeps.",
-                        reported(&StepReport::cubics)}),
-                 count({"cubic_three_real_roots", no_series, sum, "Cubic equations with three distinct real roots.",
-                        reported(&StepReport::cubics_with_three_roots)})});
+  return set_of(
+      "projection", "volume.method = \"projection\"", [](const Subject& s) { return kept_if(s.projects); },
+      {count({"projection_sweeps", sum, "Sweeps of the projection ([paper algorithm](../theory/paper_algorithm.md)).",
+              reported(&StepReport::projection_sweeps)}),
+       count({"cubic_solves", sum, "Cubic equations solved in these sweeps.", reported(&StepReport::cubics)}),
+       count({"cubic_three_real_roots", sum, "Cubic equations with three distinct real roots.",
+              reported(&StepReport::cubics_with_three_roots)})});
 }
 
 }  // namespace plica

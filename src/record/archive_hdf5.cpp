@@ -2,10 +2,8 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
-#include <map>
 
 #include "core/errors.hpp"
 #include "core/memory.hpp"
@@ -76,78 +74,35 @@ hid_t in_memory(const void* image, std::size_t size) {
 
 bool can_archive() { return true; }
 
-struct ArchiveWriter::File {
-  Handle access{in_memory(nullptr, 0), H5Pclose, cannot_make};
-  Handle links{H5Pcreate(H5P_LINK_CREATE), H5Pclose, cannot_make};
-  Handle datasets{H5Pcreate(H5P_DATASET_CREATE), H5Pclose, cannot_make};
-  Handle file{H5Fcreate(new_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, cannot_make};
-
-  File() {
-    must(H5Pset_create_intermediate_group(links, 1), cannot_make);
-    must(H5Pset_obj_track_times(datasets, false), cannot_make);
-  }
-
-  void put(const std::string& name, hid_t type, const void* values, std::size_t count, std::size_t columns) {
-    auto at = sets_.find(name);
-    if (at != sets_.end() && (at->second.count != count || at->second.columns != columns)) {
-      sets_.erase(at);
-      must(H5Ldelete(file, name.c_str(), H5P_DEFAULT), cannot_make);
-      at = sets_.end();
-    }
-    if (at == sets_.end()) {
-      make_sure_of_room(count * H5Tget_size(type));
-      const std::array<hsize_t, 2> shape = {columns > 0 ? count / columns : count, columns};
-      const Handle space(H5Screate_simple(columns > 0 ? 2 : 1, shape.data(), nullptr), H5Sclose, cannot_make);
-      const hid_t set = H5Dcreate2(file, name.c_str(), type, space, links, datasets, H5P_DEFAULT);
-      at = sets_.try_emplace(name, set, count, columns).first;
-    }
-    if (count > 0) must(H5Dwrite(at->second.set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), cannot_make);
-  }
-
- private:
-  struct Set {
-    Set(hid_t id, std::size_t its_count, std::size_t its_columns)
-        : set(id, H5Dclose, cannot_make), count(its_count), columns(its_columns) {}
-    Handle set;
-    std::size_t count, columns;
+std::string archive_bytes(const Archive& archive) {
+  const Handle access(in_memory(nullptr, 0), H5Pclose, cannot_make);
+  const Handle untimed(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, cannot_make);
+  must(H5Pset_obj_track_times(untimed, false), cannot_make);
+  const Handle file(H5Fcreate(new_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose, cannot_make);
+  const auto put = [&](const std::string& name, hid_t type, const auto& values) {
+    make_sure_of_room(values.size() * H5Tget_size(type));
+    const hsize_t count = values.size();
+    const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose, cannot_make);
+    const Handle set(H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, untimed, H5P_DEFAULT), H5Dclose,
+                     cannot_make);
+    if (count > 0) must(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), cannot_make);
   };
-  std::map<std::string, Set> sets_;
-};
-
-ArchiveWriter::ArchiveWriter() : file_(std::make_unique<File>()) {}
-ArchiveWriter::~ArchiveWriter() = default;
-
-void ArchiveWriter::put(const std::string& name, std::span<const double> values, std::size_t columns) {
-  file_->put(name, H5T_NATIVE_DOUBLE, values.data(), values.size(), columns);
-}
-void ArchiveWriter::put(const std::string& name, std::span<const int> values) {
-  file_->put(name, H5T_NATIVE_INT, values.data(), values.size(), 0);
-}
-void ArchiveWriter::put(const std::string& name, std::span<const char> bytes) {
-  file_->put(name, H5T_NATIVE_CHAR, bytes.data(), bytes.size(), 0);
-}
-
-std::string ArchiveWriter::image() {
-  must(H5Fflush(file_->file, H5F_SCOPE_GLOBAL), cannot_make);
-  const ssize_t size = H5Fget_file_image(file_->file, nullptr, 0);
+  for (const auto& [name, text] : archive.texts) put(name, H5T_NATIVE_CHAR, text);
+  for (const auto& [name, numbers] : archive.numbers) put(name, H5T_NATIVE_DOUBLE, numbers);
+  must(H5Fflush(file, H5F_SCOPE_GLOBAL), cannot_make);
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
   if (size <= 0) throw FileError(cannot_make);
   make_sure_of_room(static_cast<std::size_t>(size));
   std::string image(static_cast<std::size_t>(size), '\0');
-  if (H5Fget_file_image(file_->file, image.data(), image.size()) != size) throw FileError(cannot_make);
+  if (H5Fget_file_image(file, image.data(), image.size()) != size) throw FileError(cannot_make);
   return image;
 }
 
-struct ArchiveReader::File {
-  std::size_t size;
-  Handle access, file;
-
-  explicit File(std::string_view image)
-      : size(image.size()),
-        access(in_memory(image.data(), image.size()), H5Pclose, "HDF5 cannot read it, probably for lack of memory"),
-        file(H5Fopen(no_file, H5F_ACC_RDONLY, access), H5Fclose, "it is not an HDF5 file, or damaged") {}
-
-  template <class Number>
-  [[nodiscard]] std::vector<Number> get(const std::string& name, H5T_class_t kind, hid_t type) const {
+void read_archive(std::string_view bytes, Archive& archive) {
+  const Handle access(in_memory(bytes.data(), bytes.size()), H5Pclose,
+                      "HDF5 cannot read it, probably for lack of memory");
+  const Handle file(H5Fopen(no_file, H5F_ACC_RDONLY, access), H5Fclose, "it is not an HDF5 file, or damaged");
+  const auto get = [&](const std::string& name, H5T_class_t kind, hid_t type, auto& values) {
     make_sure_of_room(0);
     const std::string damaged = fmt::format("it is damaged: {} is missing or invalid", name);
     const Handle set(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, damaged);
@@ -155,31 +110,20 @@ struct ArchiveReader::File {
     const Handle space(H5Dget_space(set), H5Sclose, damaged);
     const hssize_t count = H5Sget_simple_extent_npoints(space);
     // The claimed size must exist, so that memory use is bounded by the size of the file.
-    if (H5Tget_class(stored) != kind || H5Tget_size(stored) != sizeof(Number) || count < 0 ||
-        static_cast<std::size_t>(count) > size / sizeof(Number) ||
-        (count > 0 && H5Dget_storage_size(set) != static_cast<std::size_t>(count) * sizeof(Number)))
+    constexpr std::size_t item_bytes = sizeof values.front();
+    if (H5Tget_class(stored) != kind || H5Tget_size(stored) != item_bytes || count < 0 ||
+        static_cast<std::size_t>(count) > bytes.size() / item_bytes ||
+        (count > 0 && H5Dget_storage_size(set) != static_cast<std::size_t>(count) * item_bytes))
       throw FileError(damaged);
-    std::vector<Number> values(static_cast<std::size_t>(count));
+    values.resize(static_cast<std::size_t>(count));
     if (count > 0) must(H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), damaged);
-    return values;
+  };
+  for (auto& [name, text] : archive.texts) get(name, H5T_INTEGER, H5T_NATIVE_CHAR, text);
+  for (auto& [name, numbers] : archive.numbers) {
+    get(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, numbers);
+    if (!std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); }))
+      throw FileError(fmt::format("it is damaged: {} contains values that are not finite", name));
   }
-};
-
-ArchiveReader::ArchiveReader(std::string_view image) : file_(std::make_unique<File>(image)) {}
-ArchiveReader::~ArchiveReader() = default;
-
-bool ArchiveReader::has(const std::string& name) const { return H5Lexists(file_->file, name.c_str(), H5P_DEFAULT) > 0; }
-std::vector<double> ArchiveReader::doubles(const std::string& name) const {
-  std::vector<double> values = file_->get<double>(name, H5T_FLOAT, H5T_NATIVE_DOUBLE);
-  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
-    throw FileError(fmt::format("it is damaged: {} contains values that are not finite", name));
-  return values;
-}
-std::vector<int> ArchiveReader::integers(const std::string& name) const {
-  return file_->get<int>(name, H5T_INTEGER, H5T_NATIVE_INT);
-}
-std::vector<char> ArchiveReader::bytes(const std::string& name) const {
-  return file_->get<char>(name, H5T_INTEGER, H5T_NATIVE_CHAR);
 }
 
 }  // namespace plica

@@ -11,24 +11,9 @@ namespace {
 
 }  // namespace
 
-struct ArchiveWriter::File {};
-struct ArchiveReader::File {};
-
 bool can_archive() { return false; }
-
-ArchiveWriter::ArchiveWriter() { refuse(); }
-ArchiveWriter::~ArchiveWriter() = default;
-void ArchiveWriter::put(const std::string&, std::span<const double>, std::size_t) {}
-void ArchiveWriter::put(const std::string&, std::span<const int>) {}
-void ArchiveWriter::put(const std::string&, std::span<const char>) {}
-std::string ArchiveWriter::image() { return {}; }
-
-ArchiveReader::ArchiveReader(std::string_view) { refuse(); }
-ArchiveReader::~ArchiveReader() = default;
-bool ArchiveReader::has(const std::string&) const { return false; }
-std::vector<double> ArchiveReader::doubles(const std::string&) const { return {}; }
-std::vector<int> ArchiveReader::integers(const std::string&) const { return {}; }
-std::vector<char> ArchiveReader::bytes(const std::string&) const { return {}; }
+std::string archive_bytes(const Archive&) { refuse(); }
+void read_archive(std::string_view, Archive&) { refuse(); }
 
 }  // namespace plica
 

@@ -1,21 +1,28 @@
 #include "record/checkpoint.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <libdeflate.h>
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <functional>
+#include <concepts>
+#include <limits>
 #include <new>
-#include <sstream>
 
 #include "core/child_process.hpp"
 #include "core/errors.hpp"
+#include "record/archive.hpp"
+#include "scenario/differences.hpp"
 
 namespace plica {
+namespace fs = std::filesystem;
 namespace {
 
+constexpr const char* newest_name = "checkpoint.h5";
+constexpr const char* previous_name = "checkpoint.previous.h5";
 constexpr std::size_t trailer_bytes = 64;
 
 std::uint32_t checksum(std::string_view bytes) { return libdeflate_crc32(0, bytes.data(), bytes.size()); }
@@ -28,274 +35,175 @@ std::string trailer(std::string_view image) {
   return text + "\n";
 }
 
-// One list of the contents of a checkpoint for writing and reading: take(name, value).
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-class Saving {
- public:
-  explicit Saving(ArchiveWriter& archive) : archive_(archive) {}
-  void operator()(const std::string& name, double value) { archive_.put(name, std::span(&value, 1)); }
-  void operator()(const std::string& name, int value) { archive_.put(name, std::span<const int>(&value, 1)); }
-  void operator()(const std::string& name, bool value) { (*this)(name, static_cast<int>(value)); }
-  void operator()(const std::string& name, std::uint64_t value) { (*this)(name, static_cast<double>(value)); }
-  void operator()(const std::string& name, const std::string& text) { archive_.put(name, std::span<const char>(text)); }
-  void operator()(const std::string& name, const std::optional<double>& value) {
-    archive_.put(name, std::span<const double>(value ? &*value : nullptr, value ? 1 : 0));
-  }
-  void operator()(const std::string& name, const std::vector<double>& values) { archive_.put(name, values); }
-  void operator()(const std::string& name, const std::vector<int>& values) { archive_.put(name, values); }
-  void operator()(const std::string& name, const std::vector<char>& values) { archive_.put(name, values); }
-  /// Lengths of the lists, then all items.
-  void operator()(const std::string& name, const std::vector<std::vector<double>>& lists) {
-    std::vector<int> lengths;
-    std::vector<double> all;
-    for (const std::vector<double>& list : lists) {
-      lengths.push_back(static_cast<int>(list.size()));
-      all.insert(all.end(), list.begin(), list.end());
-    }
-    (*this)(name + "_lengths", lengths);
-    (*this)(name, all);
-  }
-  void operator()(const std::string& name, const std::vector<EnergyFlow>& values) {
-    std::vector<double> numbers;
-    for (const auto& [active, stored, dissipated] : values) numbers.insert(numbers.end(), {active, stored, dissipated});
-    archive_.put(name, numbers, 3);
-  }
-  void operator()(const std::string& name, const Vectors& values) {
-    archive_.put(name, std::span(reinterpret_cast<const double*>(values.data()), 3 * values.size()), 3);
-  }
+[[noreturn]] void refuse(const std::string& name) {
+  throw FileError(fmt::format("it is damaged: {} is invalid", name));
+}
 
- private:
-  ArchiveWriter& archive_;
+template <class Type, class Plain>
+concept Is = std::same_as<std::remove_const_t<Type>, Plain>;
+
+template <class Type>
+concept IsList = requires(std::remove_const_t<Type> list) {
+  list.resize(0), list.push_back(list.back());
 };
 
-class Loading {
+// One description of the content for both directions: constant values are appended to a list of numbers, others are
+// taken from its front. Lists and maps begin with their length.
+class Numbers {
  public:
-  explicit Loading(const ArchiveReader& archive) : archive_(archive) {}
-  void operator()(const std::string& name, double& value) { value = one(name, archive_.doubles(name)); }
-  void operator()(const std::string& name, int& value) { value = one(name, archive_.integers(name)); }
-  void operator()(const std::string& name, bool& value) { value = one(name, archive_.integers(name)) != 0; }
-  void operator()(const std::string& name, std::uint64_t& value) {
-    const double number = one(name, archive_.doubles(name));
-    constexpr double largest = 9007199254740992.0;  // largest range of exact integers in doubles
-    if (!(number >= 0 && number <= largest && number == std::floor(number))) refuse(name);
-    value = static_cast<std::uint64_t>(number);
-  }
-  void operator()(const std::string& name, std::string& text) {
-    const std::vector<char> bytes = archive_.bytes(name);
-    text.assign(bytes.begin(), bytes.end());
-  }
-  void operator()(const std::string& name, std::optional<double>& value) {
-    const std::vector<double> values = archive_.doubles(name);
-    value.reset();
-    if (!values.empty()) value = one(name, values);
-  }
-  void operator()(const std::string& name, std::vector<double>& values) { values = archive_.doubles(name); }
-  void operator()(const std::string& name, std::vector<int>& values) { values = archive_.integers(name); }
-  void operator()(const std::string& name, std::vector<char>& values) { values = archive_.bytes(name); }
-  void operator()(const std::string& name, std::vector<std::vector<double>>& lists) {
-    const std::vector<double> all = archive_.doubles(name);
-    lists.clear();
-    auto from = all.begin();
-    for (const int length : archive_.integers(name + "_lengths")) {
-      if (length < 0 || length > all.end() - from) refuse(name);
-      lists.emplace_back(from, from + length);
-      from += length;
-    }
-    if (from != all.end()) refuse(name);
-  }
-  void operator()(const std::string& name, std::vector<EnergyFlow>& values) {
-    const std::vector<double> numbers = archive_.doubles(name);
-    if (numbers.size() % 3 != 0) refuse(name);
-    values.clear();
-    for (std::size_t i = 0; i < numbers.size(); i += 3) values.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
-  }
-  void operator()(const std::string& name, Vectors& values) {
-    const std::vector<double> numbers = archive_.doubles(name);
-    if (numbers.size() % 3 != 0) refuse(name);
-    values.clear();
-    for (std::size_t i = 0; i < numbers.size(); i += 3) values.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
-  }
+  Numbers(const char* name, std::vector<double>& list) : name_(name), list_(list) {}
 
-  [[noreturn]] static void refuse(const std::string& name) {
-    throw FileError(fmt::format("it is damaged: {} is invalid", name));
+  template <class... Values>
+  void pass(Values&... values) {
+    (pass_one(values), ...);
   }
+  [[nodiscard]] bool all_taken() const { return at_ == list_.size(); }
 
  private:
   template <class Number>
-  static Number one(const std::string& name, const std::vector<Number>& values) {
-    if (values.size() != 1) refuse(name);
-    return values.front();
+  Number next() {
+    if (all_taken()) refuse(name_);
+    const double value = list_[at_++];
+    if constexpr (std::integral<Number>) {
+      constexpr double exact = 9007199254740992.0;  // largest range of exact integers in doubles
+      using Limits = std::numeric_limits<Number>;
+      if (value < std::max(-exact, static_cast<double>(Limits::lowest())) ||
+          value > std::min(exact, static_cast<double>(Limits::max())) || value != std::floor(value))
+        refuse(name_);
+    }
+    return static_cast<Number>(value);
   }
-  const ArchiveReader& archive_;
+
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  void pass_one(Number& number) {
+    if constexpr (std::is_const_v<Number>)
+      list_.push_back(static_cast<double>(number));
+    else
+      number = next<Number>();
+  }
+  template <Is<CellId> Cell>
+  void pass_one(Cell& cell) {
+    if constexpr (std::is_const_v<Cell>)
+      list_.push_back(cell.number());
+    else
+      cell = CellId(next<int>());
+  }
+  template <Is<std::optional<double>> Optional>
+  void pass_one(Optional& value) {
+    if constexpr (std::is_const_v<Optional>) {
+      list_.insert(list_.end(), {value ? 1.0 : 0.0, value.value_or(0)});
+    } else {
+      const bool is_there = next<bool>();
+      const double number = next<double>();
+      value = is_there ? std::optional(number) : std::nullopt;
+    }
+  }
+  template <IsList List>
+  void pass_one(List& list) {
+    if constexpr (std::is_const_v<List>) {
+      list_.push_back(static_cast<double>(list.size()));
+    } else {
+      const auto size = next<std::size_t>();
+      if (size > list_.size() - at_) refuse(name_);
+      list.resize(size);
+    }
+    for (auto& item : list) pass_one(item);
+  }
+  template <class Map>
+  requires requires { typename Map::mapped_type; }
+  void pass_one(Map& map) {
+    if constexpr (std::is_const_v<Map>) {
+      list_.push_back(static_cast<double>(map.size()));
+      for (const auto& [name, value] : map) pass(name, value);
+    } else {
+      for (auto left = next<std::size_t>(); left > 0; --left) {
+        std::string name;
+        pass_one(name);
+        pass_one(map[name]);
+      }
+    }
+  }
+
+  template <Is<Vec3> Vector>
+  void pass_one(Vector& vector) {
+    for (auto& number : vector) pass_one(number);
+  }
+  template <Is<EnergyFlow> Flow>
+  void pass_one(Flow& flow) {
+    pass(flow.active, flow.stored, flow.dissipated);
+  }
+  template <Is<PlannedDivision> Planned>
+  void pass_one(Planned& one) {
+    pass(one.cut.cell, one.cut.first_wall, one.cut.second_wall, one.growth_s, one.volume_ratio);
+  }
+  template <Is<std::shared_ptr<const PastDivision>> Past>
+  void pass_one(Past& past) {
+    if constexpr (std::is_const_v<Past>) {
+      pass(past->time_s, past->positions, past->planned);
+    } else {
+      PastDivision one;
+      pass(one.time_s, one.positions, one.planned);
+      past = std::make_shared<const PastDivision>(std::move(one));
+    }
+  }
+
+  const char* name_;
+  std::vector<double>& list_;
+  std::size_t at_ = 0;
 };
 
-template <class Take, class AnyCheckpoint>
-void visit(Take& take, AnyCheckpoint& checkpoint) {
-  take("program", checkpoint.program);
-  take("scenario", checkpoint.scenario);
-  take("at_rest", checkpoint.at_rest);
-  auto& run = checkpoint.run;
-  auto& state = run.state;
-  take("state/positions", state.positions);
-  take("state/multipliers", state.multipliers);
-  take("state/contact_forces", state.contact_forces);
-  take("state/in_contact", state.in_contact);
-  take("state/time_s", state.time_s);
-  take("state/velocities", state.velocities);
-  take("state/divided_until_s", state.divided_until_s);
-  take("state/trend/step_s", state.trend.step_s);
-  take("state/trend/earlier_s", state.trend.earlier_s);
-  take("state/trend/mean_velocities", state.trend.mean_velocities);
-  take("state/trend/accelerations", state.trend.accelerations);
-  take("state/trend/multiplier_rates", state.trend.multiplier_rates);
-  take("state/internals", state.internals);
-  take("run/steps", run.steps);
-  take("run/divisions", run.divisions);
-  take("run/equilibrium_time_s", run.equilibrium_time_s);
-  take("run/at_equilibrium", run.at_equilibrium);
-  take("run/criterion_met", run.criterion_met);
-  take("run/wanted_step_s", run.wanted_step_s);
-  take("run/pace/since_s", run.pace.since_s);
-  take("run/pace/steps", run.pace.steps);
-  take("run/pace/iterations", run.pace.iterations);
-  take("run/computing_s", run.computing_s);
-  take("run/energies", run.energies);
-  take("run/whole_internals", run.whole_internals);
-  auto& record = checkpoint.record;
-  take("record/series_bytes", record.series_bytes);
-  take("record/lineage_bytes", record.lineage_bytes);
-  take("record/midline_bytes", record.midline_bytes);
-  take("record/section_bytes", record.section_bytes);
-  take("record/cells_bytes", record.cells_bytes);
-  take("record/frame_times_s", record.frame_times_s);
-  take("record/wall_s", record.wall_s);
-  take("record/solver_s", record.solver_s);
-}
-
-std::string in_lines(const std::vector<std::string>& texts) {
-  std::string lines;
-  for (const std::string& text : texts) lines += text + "\n";
-  return lines;
-}
-
-std::vector<std::string> of_lines(const std::string& lines) {
-  std::vector<std::string> texts;
-  for (std::size_t at = 0, end = 0; (end = lines.find('\n', at)) != std::string::npos; at = end + 1)
-    texts.push_back(lines.substr(at, end - at));
-  return texts;
-}
-
-// Rows: one number per column, then one per monitor, each with a flag for presence. Column names are stored, too, so
-// that rows of another table are refused instead of misread.
-void save_rows(ArchiveWriter& archive, const std::vector<Observation>& rows) {
-  std::vector<double> numbers;
-  std::vector<char> has;
-  for (const Observation& row : rows)
-    for (const auto* values : {&row.values, &row.monitors})
-      for (const std::optional<double>& value : *values)
-        numbers.push_back(value.value_or(0)), has.push_back(value ? 1 : 0);
-  const std::size_t monitors = rows.empty() ? 0 : rows.back().monitors.size();
-  archive.put("record/rows", numbers, rows.empty() ? 0 : numbers.size() / rows.size());
-  archive.put("record/has", has);
-  Saving save(archive);
-  save("record/columns", in_lines(names_of(columns())));
-  save("record/monitors", static_cast<int>(monitors));
-  save("record/criteria_met", in_lines(rows.empty() ? std::vector<std::string>() : rows.back().criteria_met));
-}
-
-bool is_count(double number) { return std::abs(number) <= 1e9 && number == std::floor(number); }
-
-std::vector<Observation> load_rows(const ArchiveReader& archive) {
-  const std::vector<double> numbers = archive.doubles("record/rows");
-  const std::vector<char> has = archive.bytes("record/has");
-  int monitors = 0;
-  std::string names, criteria;
-  Loading load(archive);
-  load("record/columns", names);
-  load("record/monitors", monitors);
-  load("record/criteria_met", criteria);
-  if (of_lines(names) != names_of(columns()))
-    throw FileError("it was written by another version of plica with other columns");
-  const std::size_t fixed = columns().size(), width = fixed + static_cast<std::size_t>(std::max(monitors, 0));
-  if (numbers.empty() || numbers.size() % width != 0 || has.size() != numbers.size()) Loading::refuse("record/rows");
-  std::vector<Observation> rows(numbers.size() / width);
-  for (std::size_t at = 0; at < numbers.size(); ++at) {
-    const std::size_t c = at % width;
-    const std::optional<double> value = has[at] != 0 ? std::optional(numbers[at]) : std::nullopt;
-    Observation& row = rows[at / width];
-    if (c < fixed && columns()[c].is_count && !is_count(numbers[at])) Loading::refuse("record/rows");
-    if (c < fixed)
-      row.values[c] = value;
+// Write a constant checkpoint to an archive, or read another from it.
+template <class AnyCheckpoint>
+void pass(AnyCheckpoint& checkpoint, Archive& archive) {
+  constexpr bool writes = std::is_const_v<AnyCheckpoint>;
+  const auto text = [&](const char* name, auto& value) {
+    if constexpr (writes)
+      archive.texts[name] = value;
     else
-      row.monitors.push_back(value);
-  }
-  rows.back().criteria_met = of_lines(criteria);
-  return rows;
+      value = archive.texts[name];
+  };
+  const auto numbers = [&](const char* name, auto&... values) {
+    Numbers list(name, archive.numbers[name]);
+    list.pass(values...);
+    if (!writes && !list.all_taken()) refuse(name);
+  };
+  auto& [program, scenario, at_rest, run, record] = checkpoint;
+  text("program", program), text("scenario", scenario), text("at_rest", at_rest);
+  // Values of other columns are refused instead of misread.
+  const std::string known = fmt::format("{}", fmt::join(names_of(columns()), " "));
+  std::conditional_t<writes, const std::string, std::string> names = known;
+  text("columns", names);
+  if (names != known) throw FileError("it was written by another version of plica with other columns");
+  auto& state = run.state;
+  auto& trend = state.trend;
+  numbers("state", state.time_s, state.positions, state.velocities, state.multipliers, state.contact_forces,
+          state.in_contact, state.internals, state.divided_until_s, trend.step_s, trend.earlier_s,
+          trend.mean_velocities, trend.accelerations, trend.multiplier_rates);
+  auto& measures = run.measures;
+  numbers("measures", measures.values, measures.monitors, measures.criteria_met, measures.is_over);
+  numbers("run", run.steps, run.divisions, run.equilibrium_time_s, run.at_equilibrium, run.wanted_step_s,
+          run.pace.since_s, run.pace.steps, run.pace.iterations, run.computing_s, run.energies, run.whole_internals,
+          run.outside_arrays);
+  numbers("divisions", run.past_divisions);
+  numbers("record", record.table_bytes, record.frame_times_s, record.wall_s, record.solver_s);
 }
 
-void save_divisions(ArchiveWriter& archive, const std::vector<std::shared_ptr<const PastDivision>>& past) {
-  Saving save(archive);
-  save("divisions/count", static_cast<int>(past.size()));
-  for (std::size_t d = 0; d < past.size(); ++d) {
-    const std::string at = fmt::format("divisions/{}/", d);
-    std::vector<int> cells, first_walls, second_walls;
-    std::vector<double> growth_s, volume_ratios;
-    for (const PlannedDivision& one : past[d]->planned) {
-      cells.push_back(one.cut.cell.number());
-      first_walls.push_back(one.cut.first_wall), second_walls.push_back(one.cut.second_wall);
-      growth_s.push_back(one.growth_s), volume_ratios.push_back(one.volume_ratio);
-    }
-    save(at + "time_s", past[d]->time_s), save(at + "positions", past[d]->positions);
-    save(at + "cells", cells), save(at + "first_walls", first_walls), save(at + "second_walls", second_walls);
-    save(at + "growth_s", growth_s), save(at + "volume_ratios", volume_ratios);
-  }
+Archive archive_of(const Checkpoint& checkpoint) {
+  Archive archive;
+  pass(checkpoint, archive);
+  return archive;
 }
 
-std::vector<std::shared_ptr<const PastDivision>> load_divisions(const ArchiveReader& archive) {
-  Loading load(archive);
-  std::vector<std::shared_ptr<const PastDivision>> past;
-  int count = 0;
-  load("divisions/count", count);
-  for (int d = 0; d < count; ++d) {
-    const std::string at = fmt::format("divisions/{}/", d);
-    PastDivision one;
-    std::vector<int> cells, first_walls, second_walls;
-    std::vector<double> growth_s, volume_ratios;
-    load(at + "time_s", one.time_s), load(at + "positions", one.positions);
-    load(at + "cells", cells), load(at + "first_walls", first_walls), load(at + "second_walls", second_walls);
-    load(at + "growth_s", growth_s), load(at + "volume_ratios", volume_ratios);
-    if (first_walls.size() != cells.size() || second_walls.size() != cells.size() || growth_s.size() != cells.size() ||
-        volume_ratios.size() != cells.size())
-      Loading::refuse(at + "cells");
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      one.planned.push_back({{CellId(cells[i]), first_walls[i], second_walls[i]}, growth_s[i], volume_ratios[i]});
-    past.push_back(std::make_shared<const PastDivision>(std::move(one)));
-  }
-  return past;
-}
-
-// Absent from checkpoints of runs without such arrays.
-void save_arrays(ArchiveWriter& archive, const std::map<std::string, CellArray>& arrays) {
-  if (arrays.empty()) return;
-  Saving save(archive);
-  save("run/outside_names", in_lines(keys_of(arrays)));
-  std::vector<std::vector<double>> values;
-  for (const auto& [name, list] : arrays) values.push_back(list);
-  save("run/outside_values", values);
-}
-
-std::map<std::string, CellArray> load_arrays(const ArchiveReader& archive) {
-  std::map<std::string, CellArray> arrays;
-  if (!archive.has("run/outside_names")) return arrays;
-  Loading load(archive);
-  std::string names;
-  std::vector<std::vector<double>> values;
-  load("run/outside_names", names);
-  load("run/outside_values", values);
-  const std::vector<std::string> lines = of_lines(names);
-  if (lines.size() != values.size()) Loading::refuse("run/outside_names");
-  for (std::size_t a = 0; a < lines.size(); ++a) arrays[lines[a]] = std::move(values[a]);
-  return arrays;
+Checkpoint checkpoint_in(std::string_view image) {
+  Archive archive = archive_of({});  // of the names
+  read_archive(image, archive);
+  Checkpoint checkpoint;
+  pass(checkpoint, archive);
+  if (!fits_columns(checkpoint.run.measures)) refuse("measures");
+  return checkpoint;
 }
 
 /// Limit of processor time: some seconds, plus one per 10 MB, a hundred times the usual duration.
@@ -337,21 +245,10 @@ std::string fingerprint(const Tissue& tissue) {
                      tissue.cells.size(), sum);
 }
 
-std::string CheckpointBytes::operator()(const Checkpoint& checkpoint) {
-  constexpr std::size_t most_kept_bytes = std::size_t{32} << 20;
-  auto archive = archive_ ? std::move(archive_) : std::make_unique<ArchiveWriter>();  // none is reused after errors
-  Saving save(*archive);
-  save("format", checkpoint_format);
-  visit(save, checkpoint);
-  save_divisions(*archive, checkpoint.run.past_divisions);
-  save_rows(*archive, checkpoint.record.rows);
-  save_arrays(*archive, checkpoint.run.outside_arrays);
-  std::string bytes = archive->image();
-  if (bytes.size() <= most_kept_bytes) archive_ = std::move(archive);
+std::string checkpoint_bytes(const Checkpoint& checkpoint) {
+  std::string bytes = archive_bytes(archive_of(checkpoint));
   return bytes += trailer(bytes);
 }
-
-std::string checkpoint_bytes(const Checkpoint& checkpoint) { return CheckpointBytes()(checkpoint); }
 
 Checkpoint read_checkpoint_bytes(std::string_view bytes) {
   if (bytes.size() < trailer_bytes) throw FileError("it is not a checkpoint, or truncated");
@@ -362,55 +259,67 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
     throw FileError(
         fmt::format("it was written by another version of plica in a format other than {}", checkpoint_format));
   if (end != trailer(image)) throw FileError("it is damaged: its checksum does not match its content");
-  const auto read = [&] {
-    const ArchiveReader archive(image);
-    Loading load(archive);
-    Checkpoint checkpoint;
-    checkpoint.record.rows = load_rows(archive);  // first: they reveal another version
-    visit(load, checkpoint);
-    checkpoint.run.past_divisions = load_divisions(archive);
-    checkpoint.run.outside_arrays = load_arrays(archive);
-    return checkpoint;
-  };
-  read_on_trial([&] { (void)read(); }, image.size());
-  return read();
+  read_on_trial([&] { (void)checkpoint_in(image); }, image.size());
+  return checkpoint_in(image);
 }
-
-namespace {
-
-// Whether a resumption may change this table of a scenario.
-bool may_change(std::string_view table) {
-  return table == "[time]" || table == "[output]" || table == "[stop]" || table.starts_with("[stop.");
-}
-
-// Lines of a resolved scenario in the tables selected by `counts`, each preceded by the name of its table.
-std::vector<std::string> lines_in(const std::string& scenario, const std::function<bool(std::string_view)>& counts) {
-  std::vector<std::string> kept;
-  std::string table;
-  std::istringstream stream(scenario);
-  for (std::string line; std::getline(stream, line);) {
-    if (line.starts_with('['))
-      table = line;
-    else if (counts(table) && !line.empty() && !line.starts_with('#'))
-      kept.push_back(table.empty() ? line : fmt::format("{} {}", table, line));
-  }
-  return kept;
-}
-
-}  // namespace
 
 std::optional<std::string> other_scenario(const std::string& before, const std::string& now) {
-  const auto counts = [](std::string_view table) { return !may_change(table); };
-  const std::vector<std::string> a = lines_in(before, counts), b = lines_in(now, counts);
-  const auto [in_a, in_b] = std::ranges::mismatch(a, b);
-  if (in_a == a.end() && in_b == b.end()) return std::nullopt;
-  const std::string was = in_a == a.end() ? "nothing" : *in_a, is = in_b == b.end() ? "nothing" : *in_b;
-  return fmt::format("it has {}, this one has {}", was, is);
+  for (const KeyDifference& one : scenario_differences(before, now))
+    if (!one.key.starts_with("time.") && !one.key.starts_with("output.") && !one.key.starts_with("stop."))
+      return one.text();
+  return std::nullopt;
 }
 
 bool other_stop(const std::string& before, const std::string& now) {
-  const auto counts = [](std::string_view table) { return table.starts_with("[stop"); };
-  return lines_in(before, counts) != lines_in(now, counts);
+  return std::ranges::any_of(scenario_differences(before, now),
+                             [](const KeyDifference& one) { return one.key.starts_with("stop."); });
 }
+
+CheckpointFiles::CheckpointFiles(const fs::path& directory)
+    : newest_(directory / newest_name), previous_(directory / previous_name) {}
+
+bool CheckpointFiles::sync_is_due() {
+  constexpr double between_syncs_s = 3;
+  if (last_sync_s_ != 0 && now_s() - last_sync_s_ < between_syncs_s) return false;
+  last_sync_s_ = now_s();
+  return true;
+}
+
+void CheckpointFiles::write(const Checkpoint& checkpoint, Sync sync) {
+  const fs::path temporary = write_beside(newest_, checkpoint_bytes(checkpoint), sync);
+  std::error_code ignored;
+  if (newest_is_on_disk_ || !fs::exists(previous_, ignored))
+    fs::rename(newest_, previous_, ignored);  // fails without one
+  rename_file(temporary, newest_, sync);
+  newest_is_on_disk_ = sync == Sync::now;
+}
+
+std::optional<Checkpoint> read_checkpoint(const fs::path& directory, std::string& complaint) {
+  constexpr std::uintmax_t most_bytes = std::uintmax_t{16} << 30;
+  std::string complaints;
+  for (const char* name : {newest_name, previous_name}) {
+    const fs::path file = directory / name;
+    std::error_code error;
+    if (!fs::exists(file, error)) continue;
+    try {
+      Checkpoint checkpoint = read_checkpoint_bytes(read_file(file, most_bytes));
+      complaint = complaints;
+      return checkpoint;
+    } catch (const FileError& why) {
+      const std::string text = why.what();
+      complaints += (complaints.empty() ? "" : "; ") +
+                    (text.starts_with(file.string()) ? text : fmt::format("{}: {}", file.string(), text));
+    }
+  }
+  if (!complaints.empty()) throw FileError(complaints + "; restart with --overwrite");
+  return std::nullopt;
+}
+
+void remove_checkpoints(const fs::path& directory) {
+  std::error_code ignored;
+  for (const char* name : {newest_name, previous_name}) fs::remove(directory / name, ignored);
+}
+
+bool is_checkpoint(const fs::path& file_name) { return file_name == newest_name || file_name == previous_name; }
 
 }  // namespace plica

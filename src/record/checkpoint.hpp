@@ -1,30 +1,29 @@
-// Content of checkpoint.h5: everything that a run needs to continue bitwise identically (docs/how-to/reliability.md).
+// Checkpoints: everything that a run needs to continue bitwise identically (docs/how-to/reliability.md), besides the
+// rows of its tables. The last two are kept in checkpoint.h5 and checkpoint.previous.h5, written atomically.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
-#include <memory>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "measure/observation.hpp"
-#include "record/archive.hpp"
+#include "core/files.hpp"
 #include "simulation/run_memory.hpp"
 
 namespace plica {
 
 /// Version of the content; checkpoints of another version are refused.
-inline constexpr int checkpoint_format = 8;
+inline constexpr int checkpoint_format = 9;
 
-/// Files written before the checkpoint; a resumption truncates them to these sizes.
+/// Files written before the checkpoint.
 struct RecordMemory {
-  std::vector<Observation> rows;  // of series.csv
-  std::uint64_t series_bytes = 0, lineage_bytes = 0, midline_bytes = 0, section_bytes = 0,
-                cells_bytes = 0;      // 0: no such file
-  std::vector<double> frame_times_s;  // of the snapshots, in order
-  double wall_s = 0, solver_s = 0;    // of the run so far
+  std::map<std::string, std::uint64_t> table_bytes;  // by file name; a resumption truncates tables to these sizes
+  std::vector<double> frame_times_s;                 // of the snapshots, in order
+  double wall_s = 0, solver_s = 0;                   // of the run so far
 };
 
 struct Checkpoint {
@@ -47,21 +46,39 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes);
 /// longer than reading `bytes` can: HDF5 trusts its input and loops on some damaged bytes with a forged checksum.
 void read_on_trial(const std::function<void()>& read, std::size_t bytes);
 
-/// Converter for successive checkpoints of a run: rebuilds only what is new, in a fifth of the time. The first result
-/// equals checkpoint_bytes.
-class CheckpointBytes {
- public:
-  std::string operator()(const Checkpoint& checkpoint);
-
- private:
-  std::unique_ptr<ArchiveWriter> archive_;  // of the last checkpoint, if small
-};
-
-/// First line in which two resolved scenarios differ outside [time], [stop] and [output], which a resumption may
-/// change; empty if none.
+/// First difference of two resolved scenarios outside [time], [stop] and [output], which a resumption may change; empty
+/// if none.
 std::optional<std::string> other_scenario(const std::string& before, const std::string& now);
 
 /// Whether two resolved scenarios differ in [stop].
 bool other_stop(const std::string& before, const std::string& now);
+
+/// Writer of the checkpoints of one directory. Keeps a checkpoint synced to disk (Sync::now) as the previous one, so
+/// that one of the two survives a power cut.
+class CheckpointFiles {
+ public:
+  explicit CheckpointFiles(const std::filesystem::path& directory);
+
+  /// Whether the next checkpoint, after its files, should be synced to disk: every few seconds.
+  [[nodiscard]] bool sync_is_due();
+
+  /// Write a checkpoint. Throws FileError and leaves earlier ones unchanged.
+  void write(const Checkpoint& checkpoint, Sync sync);
+
+ private:
+  std::filesystem::path newest_, previous_;
+  double last_sync_s_ = 0;
+  bool newest_is_on_disk_ = false;
+};
+
+/// Read the newest readable checkpoint of a directory; empty if there is none. `complaint`: reason if it is not the
+/// last one. Throws FileError if checkpoints exist but none is readable.
+std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& directory, std::string& complaint);
+
+/// Remove the checkpoints of a directory.
+void remove_checkpoints(const std::filesystem::path& directory);
+
+/// Whether the name is that of a checkpoint.
+bool is_checkpoint(const std::filesystem::path& file_name);
 
 }  // namespace plica

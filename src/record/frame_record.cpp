@@ -6,17 +6,7 @@
 namespace plica {
 namespace {
 
-using Columns = std::vector<std::vector<double>>;
-
-// Transpose columns into rows.
-std::vector<double> rows_of(const Columns& columns) {
-  std::vector<double> rows;
-  const std::size_t count = columns.empty() ? 0 : columns.front().size();
-  rows.reserve(count * columns.size());
-  for (std::size_t r = 0; r < count; ++r)
-    for (const auto& column : columns) rows.push_back(column[r]);
-  return rows;
-}
+constexpr const char *cells_csv = "cells.csv", *midline_csv = "midline.csv", *section_csv = "cross_section.csv";
 
 void add_to_frame(const CellColumn& column, std::vector<double> values, FrameRecord& frame) {
   if (column.none_in_frames)
@@ -60,6 +50,14 @@ FrameTaker::FrameTaker(const Tissue& tissue, const FurrowSites* sites, bool with
   follow_division(tissue);
 }
 
+std::map<std::string, std::vector<std::string>> FrameTaker::tables() const {
+  std::map<std::string, std::vector<std::string>> headers;
+  if (with_cell_rows_) headers[cells_csv] = cells_csv_names();
+  if (sites_ != nullptr) headers[midline_csv] = names_of(midline_columns());
+  if (sites_ != nullptr) headers[section_csv] = names_of(section_columns());
+  return headers;
+}
+
 void FrameTaker::follow_division(const Tissue& tissue) {
   cells_ = std::make_shared<const FrameCells>(tissue);
   if (sites_ != nullptr) section_cells_ = section_cells(tissue, sites_->outward);
@@ -67,44 +65,33 @@ void FrameTaker::follow_division(const Tissue& tissue) {
 
 FrameRecord FrameTaker::take(const Model& model, const State& state,
                              const std::map<std::string, CellArray>& outside) const {
-  FrameRecord frame{state.time_s, cells_, state.positions, {}, {}, {}, {}, {}, {}};
+  FrameRecord frame{state.time_s, cells_, state.positions, {}, {}, {}, {}};
   for (const NodeColumn& column : node_columns()) frame.vectors.emplace_back(column.name, column.values(model, state));
   const MeasuredCells measured(model, state);
   add_cells(measured, frame);
   frame.scalars.insert(frame.scalars.end(), outside.begin(), outside.end());
-  if (sites_ != nullptr) {
-    add_midline(measured, frame);
-    add_sections(measured, frame);
-  }
+  if (sites_ != nullptr) add_fold(measured, frame);
   return frame;
 }
 
 void FrameTaker::add_cells(const MeasuredCells& measured, FrameRecord& frame) const {
-  Columns of_csv;
   for (const CellColumn& column : cell_columns()) {
     const bool in_csv = column.in_csv && with_cell_rows_;
     if (!in_csv && column.in_frames == InFrames::nothing) continue;
     std::vector<double> values = column.values(measured);
-    if (in_csv) of_csv.push_back(values);
+    if (in_csv) frame.columns[cells_csv].push_back(values);
     add_to_frame(column, std::move(values), frame);
   }
-  frame.cell_rows = rows_of(of_csv);
 }
 
-void FrameTaker::add_midline(const MeasuredCells& measured, FrameRecord& frame) const {
-  Columns of_csv;
-  for (const MidlineColumn& column : midline_columns()) of_csv.push_back(column.values(measured, *sites_));
-  frame.midline_rows = rows_of(of_csv);
-}
-
-void FrameTaker::add_sections(const MeasuredCells& measured, FrameRecord& frame) const {
+void FrameTaker::add_fold(const MeasuredCells& measured, FrameRecord& frame) const {
+  for (const MidlineColumn& column : midline_columns())
+    frame.columns[midline_csv].push_back(column.values(measured, *sites_));
   std::vector<CellId> cells;
   for (const SectionCell& one : section_cells_) cells.push_back(one.cell);
   const std::vector<FaceShape> shapes = apical_shapes(measured.model.tissue, cells, measured.state.positions);
-  Columns of_csv;
   for (const SectionColumn& column : section_columns())
-    of_csv.push_back(column.values({measured, section_cells_, shapes}));
-  frame.section_rows = rows_of(of_csv);
+    frame.columns[section_csv].push_back(column.values({measured, section_cells_, shapes}));
 }
 
 }  // namespace plica

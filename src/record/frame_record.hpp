@@ -33,8 +33,7 @@ struct FrameRecord {
   std::vector<std::pair<std::string, Vectors>> vectors;              // nodes, by array name
   std::vector<std::pair<std::string, std::vector<double>>> scalars;  // cells
   std::vector<std::pair<std::string, std::vector<int>>> integers;    // cells
-  std::vector<double> cell_rows;                                     // of cells.csv, row by row; or empty
-  std::vector<double> midline_rows, section_rows;                    // of midline.csv and cross_section.csv
+  std::map<std::string, std::vector<std::vector<double>>> columns;   // with rows of tables, by file name
 
   [[nodiscard]] MeshElements mesh() const;
   /// Data of the snapshot's file; they refer to this record.
@@ -51,16 +50,15 @@ class FrameTaker {
   [[nodiscard]] FrameRecord take(const Model& model, const State& state,
                                  const std::map<std::string, CellArray>& outside) const;
 
-  [[nodiscard]] bool with_cell_rows() const { return with_cell_rows_; }
-  [[nodiscard]] bool with_fold() const { return sites_ != nullptr; }
+  /// Headers of the tables with rows of each snapshot, by file name.
+  [[nodiscard]] std::map<std::string, std::vector<std::string>> tables() const;
 
   /// Update after a division of the tissue and the sites.
   void follow_division(const Tissue& tissue);
 
  private:
   void add_cells(const MeasuredCells& measured, FrameRecord& frame) const;
-  void add_midline(const MeasuredCells& measured, FrameRecord& frame) const;
-  void add_sections(const MeasuredCells& measured, FrameRecord& frame) const;
+  void add_fold(const MeasuredCells& measured, FrameRecord& frame) const;
 
   const FurrowSites* sites_;
   bool with_cell_rows_;

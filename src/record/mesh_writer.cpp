@@ -12,10 +12,8 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "core/base64.hpp"
 #include "core/files.hpp"
 #include "core/markup.hpp"
-#include "record/deflate.hpp"
 
 namespace plica {
 namespace {

@@ -1,7 +1,6 @@
 #include "record/recorder.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <omp.h>
 
 #include "core/errors.hpp"
@@ -11,7 +10,6 @@
 #include "record/csv.hpp"
 #include "record/mesh_writer.hpp"
 #include "record/run_directory.hpp"
-#include "record/series_rows.hpp"
 #include "scenario/print.hpp"
 
 namespace plica {
@@ -19,17 +17,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t most_cells_by_default = 2000;  // with one row per cell and frame in cells.csv
-constexpr std::size_t most_waiting = 1;              // queued frames and steps, besides the one being written
 
-// Open a table: new with its header, or truncated to its former size.
-RowFile table(const fs::path& file, const std::vector<std::string>& names, std::uint64_t keep_bytes) {
-  if (keep_bytes > 0) return RowFile(file, keep_bytes);
-  const std::string header = fmt::format("{}\n", fmt::join(names, ","));
-  write_file(file, header);
-  return RowFile(file, header.size());
-}
-
-std::uint64_t bytes_of(const std::optional<RowFile>& table) { return table ? table->size_bytes() : 0; }
+constexpr const char *series_csv = "series.csv", *lineage_csv = "lineage.csv";
 
 }  // namespace
 
@@ -41,8 +30,7 @@ Recorder::Recorder(fs::path directory, const Scenario& scenario, const Simulatio
       frame_taker_(simulation.model().tissue, simulation.observer().kept<FurrowSites>("fold"),
                    scenario.output.cells_csv.value_or(simulation.model().tissue.cells.size() <= most_cells_by_default)),
       blank_{version(), resolved_toml(scenario), fingerprint(simulation.model().tissue), {}, {}},
-      checkpoints_(directory_),
-      writing_(most_waiting) {}
+      checkpoints_(directory_) {}
 
 WallTimes Recorder::wall() const {
   const double since_start_s = std::chrono::duration<double>(Clock::now() - start_).count();
@@ -50,14 +38,23 @@ WallTimes Recorder::wall() const {
 }
 
 void Recorder::open_tables(const RecordMemory& memory) {
-  series_ = table(directory_ / "series.csv", series_header(simulation_.observer()), memory.series_bytes);
-  if (frame_taker_.with_fold()) {
-    midline_ = table(directory_ / "midline.csv", names_of(midline_columns()), memory.midline_bytes);
-    section_ = table(directory_ / "cross_section.csv", names_of(section_columns()), memory.section_bytes);
+  std::map<std::string, std::vector<std::string>> headers = frame_taker_.tables();
+  headers[series_csv] = series_header(simulation_.observer());
+  if (!scenario_.divisions.empty()) headers[lineage_csv] = names_of(lineage_columns());
+  for (const auto& [name, header] : headers) {
+    const auto kept = memory.table_bytes.find(name);
+    const std::uint64_t keep_bytes = kept == memory.table_bytes.end() ? 0 : kept->second;
+    tables_.try_emplace(name, directory_ / name, begin_table(directory_ / name, header, keep_bytes));
   }
-  if (frame_taker_.with_cell_rows()) cells_ = table(directory_ / "cells.csv", cells_csv_names(), memory.cells_bytes);
-  if (!scenario_.divisions.empty())
-    lineage_ = table(directory_ / "lineage.csv", names_of(lineage_columns()), memory.lineage_bytes);
+}
+
+void Recorder::append(const std::string& table, const std::string& rows) {
+  if (!rows.empty()) tables_.at(table).append(rows);
+}
+
+void Recorder::record_row() {
+  rows_.push_back(simulation_.measures());
+  append(series_csv, series_row(rows_.back(), simulation_.observer().columns()));
 }
 
 void Recorder::save_checkpoint() {
@@ -66,9 +63,6 @@ void Recorder::save_checkpoint() {
   const auto checkpoint = std::make_shared<Checkpoint>(blank_);
   checkpoint->run = simulation_.memory();
   RecordMemory& record = checkpoint->record;
-  record.rows = rows_;
-  record.series_bytes = bytes_of(series_);
-  record.lineage_bytes = bytes_of(lineage_);
   record.wall_s = so_far.total_s;
   record.solver_s = so_far.solver_s;
   writing_.add([this, checkpoint] { write(*checkpoint); });
@@ -78,17 +72,13 @@ void Recorder::begin(const std::string& input_toml) {
   open_tables({});
   write_file(directory_ / "scenario.input.toml", input_toml);
   write_file(directory_ / "scenario.toml", blank_.scenario);
-  rows_.push_back(simulation_.measures());
-  append_series(rows_.back());
+  record_row();
   save_frame();
   save_checkpoint();
   writing_.finish();  // report write errors before the first step
 }
 
 void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
-  for (const Observation& row : memory.rows)
-    if (row.monitors.size() != simulation_.observer().monitors().size())
-      throw FileError(directory_.string() + ": the checkpoint is damaged: its rows do not match the monitors");
   frame_taker_.follow_division(simulation_.model().tissue);
   earlier_s_ = memory.wall_s;
   beside_s_ = simulation_.computing_s() - memory.solver_s;
@@ -96,7 +86,9 @@ void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
   open_tables(memory);
   write_file(directory_ / "scenario.input.toml", input_toml);
   write_file(directory_ / "scenario.toml", blank_.scenario);
-  rows_ = std::move(memory.rows);
+  rows_ = read_series_rows(directory_ / series_csv, simulation_.observer());
+  if (rows_.empty() || rows_.back().time_s() != simulation_.time_s())
+    throw FileError((directory_ / series_csv).string() + ": does not end at the time of the checkpoint");
   for (const double time_s : memory.frame_times_s) frames_.emplace_back(time_s, frame_file(frames_.size()));
   if (!frames_.empty()) last_frame_s_ = frames_.back().first;
   write_collection(directory_ / "frames.pvd", frames_);
@@ -107,11 +99,10 @@ void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
   }
 }
 
-void Recorder::step_accepted(const AcceptedStep& step, const Observation& measures) {
+void Recorder::step_accepted(const AcceptedStep& step, const Observation& /*measures*/) {
   if (omp_get_num_procs() == 1) beside_s_ += writing_.processor_s() - written_s_;
   writing_.finish();
-  rows_.push_back(measures);
-  append_series(measures);
+  record_row();
   if (step.frame_is_due) save_frame();
   if (simulation_.is_resumable()) save_checkpoint();
   written_s_ = writing_.processor_s();
@@ -119,20 +110,25 @@ void Recorder::step_accepted(const AcceptedStep& step, const Observation& measur
 
 void Recorder::write(Checkpoint& checkpoint) {
   RecordMemory& record = checkpoint.record;
-  record.midline_bytes = bytes_of(midline_);
-  record.section_bytes = bytes_of(section_);
-  record.cells_bytes = bytes_of(cells_);
   for (const auto& [time_s, file] : frames_) record.frame_times_s.push_back(time_s);
   const Sync sync = checkpoints_.sync_is_due() ? Sync::now : Sync::later;
-  if (sync == Sync::now)
-    for (std::optional<RowFile>* file : {&series_, &lineage_, &midline_, &section_, &cells_})
-      if (*file) (*file)->sync();
+  for (auto& [name, table] : tables_) {
+    record.table_bytes[name] = table.size_bytes();
+    if (sync == Sync::now) table.sync();
+  }
   checkpoints_.write(checkpoint, sync);
 }
 
 void Recorder::cells_divided(const Division& division) {
   frame_taker_.follow_division(simulation_.model().tissue);
-  if (lineage_) append_lineage(division);
+  writing_.finish();
+  for (const auto& daughters : division.daughters)
+    for (const CellId daughter : daughters) {
+      const Lineage& lineage = simulation_.model().tissue.cells[daughter.index()].lineage;
+      std::vector<std::optional<double>> values;
+      for (const LineageColumn& column : lineage_columns()) values.emplace_back(column.values(lineage));
+      append(lineage_csv, csv_row(values));
+    }
   save_frame();
 }
 
@@ -144,10 +140,6 @@ nlohmann::ordered_json Recorder::finish() {
              summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   for (RecordListener* listener : listeners_) listener->end();
   return summary;
-}
-
-void Recorder::append_series(const Observation& row) {
-  series_->append(series_row(row, simulation_.observer().columns()));
 }
 
 void Recorder::save_frame() {
@@ -163,23 +155,11 @@ void Recorder::write(const FrameRecord& frame) {
   frames_.emplace_back(frame.time_s, file);
   write_collection(directory_ / "frames.pvd", frames_);
   if (!listeners_.empty()) tell(frame_of(frame.mesh(), frame.positions, arrays), frame.time_s);
-  if (!frame.cell_rows.empty()) cells_->append(csv_rows(frame.cell_rows, cells_csv_names().size()));
-  if (!frame.midline_rows.empty()) midline_->append(csv_rows(frame.midline_rows, midline_columns().size()));
-  if (!frame.section_rows.empty()) section_->append(csv_rows(frame.section_rows, section_columns().size()));
+  for (const auto& [table, columns] : frame.columns) append(table, csv_of_columns(columns));
 }
 
 void Recorder::tell(const Frame& frame, double time_s) {
   for (RecordListener* listener : listeners_) listener->add_frame(frame, time_s);
-}
-
-void Recorder::append_lineage(const Division& division) {
-  for (const auto& daughters : division.daughters)
-    for (const CellId daughter : daughters) {
-      const Lineage& lineage = simulation_.model().tissue.cells[daughter.index()].lineage;
-      std::vector<std::optional<double>> values;
-      for (const LineageColumn& column : lineage_columns()) values.emplace_back(column.values(lineage));
-      lineage_->append(csv_row(values));
-    }
 }
 
 }  // namespace plica

@@ -1,12 +1,13 @@
 // Recorder of a run: writes all files of its directory while it proceeds, each atomically.
 //
-// series.csv and lineage.csv grow immediately. A snapshot (its file, cells.csv, midline.csv, cross_section.csv, output
-// of listeners) is copied from the state, then compressed and written in the background, followed by the checkpoint if
-// the step is resumable. The output of one step is written before the next step is recorded.
+// series.csv grows immediately. A snapshot (its file, cells.csv, midline.csv, cross_section.csv, output of listeners)
+// is copied from the state, then compressed and written in the background, followed by the checkpoint if the step is
+// resumable. The output of one step is written before the next step is recorded.
 #pragma once
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,14 +15,26 @@
 #include "core/background.hpp"
 #include "core/files.hpp"
 #include "measure/observation.hpp"
-#include "record/checkpoint_files.hpp"
+#include "record/checkpoint.hpp"
 #include "record/frame_record.hpp"
-#include "record/record_listener.hpp"
 #include "record/summary.hpp"
 #include "scenario/scenario.hpp"
 #include "simulation/simulation.hpp"
+#include "tissue/files/frame_file.hpp"
 
 namespace plica {
+
+/// Observer of recorded output, for example a report or a live view.
+class RecordListener {
+ public:
+  virtual ~RecordListener() = default;
+
+  /// Called for each written snapshot in order of time, on the writing thread; on resumption also for earlier ones.
+  virtual void add_frame(const Frame& frame, double time_s) = 0;
+
+  /// Called at the end of the run, when all files exist.
+  virtual void end() = 0;
+};
 
 class Recorder final : public SimulationListener {
  public:
@@ -38,8 +51,8 @@ class Recorder final : public SimulationListener {
   /// Write both scenario files (`input_toml`: as given), the reference snapshot and the first checkpoint.
   void begin(const std::string& input_toml);
 
-  /// Continue after a checkpoint: truncate every file to its recorded size and remove incomplete files. Throws
-  /// FileError for a missing or short file.
+  /// Continue after a checkpoint, from which the simulation continues: truncate every file to its recorded size, remove
+  /// incomplete files and read the rows of the series. Throws FileError for a missing, short or damaged file.
   void go_on(const std::string& input_toml, RecordMemory memory);
 
   /// Record a row of series.csv, and a snapshot and a checkpoint if due. Rethrows write errors of earlier steps.
@@ -58,8 +71,8 @@ class Recorder final : public SimulationListener {
   void save_checkpoint();
   [[nodiscard]] WallTimes wall() const;
   void open_tables(const RecordMemory& memory);
-  void append_series(const Observation& row);
-  void append_lineage(const Division& division);
+  void append(const std::string& table, const std::string& rows);
+  void record_row();
   void save_frame();
   void write(const FrameRecord& frame);
   void write(Checkpoint& checkpoint);  // completed by what is written before it
@@ -74,12 +87,11 @@ class Recorder final : public SimulationListener {
   double written_s_ = 0;  // its value when the last step was recorded
   FrameTaker frame_taker_;
   Checkpoint blank_;  // without a step
-  std::optional<RowFile> series_, lineage_;
   std::vector<Observation> rows_;
   double last_frame_s_ = 0;
 
-  // Used by `write`, in the background.
-  std::optional<RowFile> midline_, section_, cells_;
+  // Used in the background, or while nothing is written there.
+  std::map<std::string, RowFile> tables_;               // by file name
   std::vector<std::pair<double, std::string>> frames_;  // time, file
   CheckpointFiles checkpoints_;
   std::vector<RecordListener*> listeners_;

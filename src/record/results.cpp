@@ -7,17 +7,21 @@
 #include <sstream>
 
 #include "core/errors.hpp"
-#include "core/files.hpp"
 #include "core/numbers.hpp"
+#include "mechanics/obstacles/vitelline.hpp"
+#include "scenario/load.hpp"
+#include "scenario/words.hpp"
 
 namespace plica {
 namespace {
 
 std::vector<std::string> fields(std::string line) {
   std::erase(line, '\r');
-  std::istringstream stream(line + ',');
   std::vector<std::string> result;
-  for (std::string field; std::getline(stream, field, ',');) result.push_back(field);
+  for (std::size_t at = 0, end = 0; end != std::string::npos; at = end + 1) {
+    end = line.find(',', at);
+    result.push_back(line.substr(at, end - at));
+  }
   return result;
 }
 
@@ -43,8 +47,8 @@ std::optional<double> Series::at(std::size_t column, double time_s) const {
   return *low + part * (*high - *low);
 }
 
-Series read_series(const std::filesystem::path& file) {
-  std::istringstream text(read_file(file));
+Series read_series(const std::filesystem::path& file, std::uintmax_t most_bytes) {
+  std::istringstream text(read_file(file, most_bytes));
   const auto refuse = [&](int line, const std::string& problem) {
     throw FileError(fmt::format("{}:{}: {}", file.string(), line, problem));
   };
@@ -87,6 +91,41 @@ nlohmann::ordered_json read_summary(const std::filesystem::path& directory) {
 std::optional<double> number_of(const nlohmann::ordered_json& summary, const std::string& key) {
   if (!summary.is_object() || !summary.contains(key) || !summary.at(key).is_number()) return std::nullopt;
   return summary.at(key).get<double>();
+}
+
+std::optional<Scenario> scenario_of_run(const std::filesystem::path& directory) {
+  const std::filesystem::path file = directory / "scenario.toml";
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return {};
+  try {
+    return load_scenario({"scenario", file.string(), read_file(file)});
+  } catch (const ScenarioError&) {
+    return {};
+  }
+}
+
+Scenario as_begun(Scenario scenario, const std::filesystem::path& directory) {
+  const std::optional<Scenario> before = scenario_of_run(directory);
+  if (!before) return scenario;
+  if (!scenario.given_at.contains("elasticity.corner_barrier_Pa"))
+    scenario.elasticity.corner_barrier_Pa = before->elasticity.corner_barrier_Pa;
+  if (!scenario.given_at.contains("time.integrator")) scenario.time.integrator = before->time.integrator;
+  return scenario;
+}
+
+std::optional<Capsule> shell_of_run(const Scenario& scenario, const Vectors& rest_positions) {
+  const EmbryoInput& embryo = scenario.embryo;
+  const EmbryoShape shape = shape_of(embryo);
+  if (!scenario.vitelline.enabled || is_patch(shape)) return {};
+  if (!is_of_grid(shape) && shape != EmbryoShape::file) return {};  // the shell touches the apical surface
+  const double radius = embryo.diameter_um / 2,
+               half_axis = shape_of(embryo) == EmbryoShape::pill    ? embryo.length_um / 2 - radius
+                           : shape_of(embryo) == EmbryoShape::slice ? embryo.length_um / 2
+                                                                    : 0;
+  Capsule shell =
+      shape_of(embryo) == EmbryoShape::file ? enclosing_capsule(rest_positions) : Capsule{half_axis, radius};
+  shell.radius_um += scenario.vitelline.gap_um;
+  return shell;
 }
 
 }  // namespace plica

@@ -7,6 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "core/files.hpp"
+#include "scenario/scenario.hpp"
+#include "tissue/tissue.hpp"
+
 namespace plica {
 
 /// Table of numbers with named columns, as series.csv. Empty fields are missing values.
@@ -21,13 +25,24 @@ struct Series {
   [[nodiscard]] std::optional<double> at(std::size_t column, double time_s) const;
 };
 
-/// Read a time series. Throws FileError for an unreadable file or a table whose first column is not time_s.
-Series read_series(const std::filesystem::path& file);
+/// Read a time series. Throws FileError for an unreadable file, one larger than `most_bytes`, or a table whose first
+/// column is not time_s.
+Series read_series(const std::filesystem::path& file, std::uintmax_t most_bytes = largest_file_read_bytes);
 
 /// Read summary.json; null if missing. Throws FileError for damaged content.
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory);
 
 /// Number of a summary; empty if missing.
 std::optional<double> number_of(const nlohmann::ordered_json& summary, const std::string& key);
+
+/// Load scenario.toml of a run; empty if it is missing or of an incompatible version.
+std::optional<Scenario> scenario_of_run(const std::filesystem::path& directory);
+
+/// Returns the scenario with which to resume the run in a directory: values that neither file nor overrides set and
+/// that are chosen automatically stay as the run began, whichever version chose them.
+Scenario as_begun(Scenario scenario, const std::filesystem::path& directory);
+
+/// Vitelline membrane of a run around the reference positions of nodes (um); empty if it has none.
+std::optional<Capsule> shell_of_run(const Scenario& scenario, const Vectors& rest_positions);
 
 }  // namespace plica

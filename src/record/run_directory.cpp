@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
-#include "record/checkpoint_files.hpp"
+#include "record/checkpoint.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

@@ -12,9 +12,11 @@
 #include "core/clock.hpp"
 #include "core/memory.hpp"
 #include "core/version.hpp"
+#include "core/words.hpp"
 #include "measure/cells.hpp"
 #include "mechanics/energy.hpp"
-#include "record/outcome.hpp"
+#include "record/results.hpp"
+#include "scenario/embryo_axes.hpp"
 #include "scenario/print.hpp"
 #include "scenario/regions.hpp"
 #include "scenario/words.hpp"
@@ -25,7 +27,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(std::optional<double> value) { return value && std::isfinite(*value) ? Json(*value) : Json(nullptr); }
+// Without "-0", which rows of a resumed run do not have either.
+Json number(std::optional<double> value) { return value && std::isfinite(*value) ? Json(*value + 0.0) : Json(nullptr); }
 
 Json in_json(const Column& column, std::optional<double> value) {
   return column.is_count && value ? Json(static_cast<std::int64_t>(*value)) : number(value);
@@ -39,8 +42,9 @@ std::string hash(std::string_view text) {
 }
 
 // Criteria that ended the run, including equilibrium if enabled; null at the end time or after a failure.
-Json stopped_by(const Scenario& scenario, const Simulation& simulation, const Observation& last) {
-  std::vector<std::string> names = simulation.criterion_met() ? last.criteria_met : std::vector<std::string>{};
+Json stopped_by(const Scenario& scenario, const Simulation& simulation) {
+  std::vector<std::string> names;
+  if (simulation.criterion_met()) names = simulation.measures().criteria_met;
   if (simulation.status() == RunStatus::equilibrium && scenario.stop.at_equilibrium) names.emplace_back("equilibrium");
   return names.empty() ? Json(nullptr) : Json(fmt::format("{}", fmt::join(names, ", ")));
 }
@@ -82,23 +86,54 @@ std::optional<double> value_at(const std::vector<Observation>& rows, std::size_t
   return *from + (*to - *from) * (time_s - before->time_s()) / (after->time_s() - before->time_s());
 }
 
+constexpr double least_change = 0.005;  // smallest reported change of a ratio
+
+// Parts of the line; values that the run lacks are left out.
+class Parts {
+ public:
+  explicit Parts(const Json& summary) : summary_(summary) {}
+
+  void value(const char* words, const char* key, const char* unit = "", const char* after = "") {
+    if (const auto number = number_of(summary_, key)) text(fmt::format("{} {:.2f}{}{}", words, *number, unit, after));
+  }
+  void change(const char* words, const char* key) {
+    if (std::abs(number_of(summary_, key).value_or(1) - 1) > least_change) value(words, key);
+  }
+  void text(std::string part) { parts_.push_back(std::move(part)); }
+  [[nodiscard]] std::string line() const { return fmt::format("{}", fmt::join(parts_, ", ")); }
+
+ private:
+  const Json& summary_;
+  std::vector<std::string> parts_;
+};
+
+void add_furrow(const Json& summary, Parts& parts) {
+  parts.value("furrow depth", "furrow_depth_um", " um");
+  parts.value("apical area ratio", "vml_apical_area_ratio", "", " (midline centre)");
+  parts.value("peak speed ratio", "peak_speed_ratio", "", " (end/centre)");
+  const auto closed = number_of(summary, "lips_closed"), closed_s = number_of(summary, "lips_closed_time_s");
+  if (closed && closed_s)
+    parts.text(fmt::format("lips {} at {}", *closed == 1 ? "closed" : "open again, closed", moment(*closed_s)));
+  else if (closed)
+    parts.text("lips open");
+}
+
 }  // namespace
 
 Json make_summary(const Scenario& scenario, const Simulation& simulation, const std::vector<Observation>& rows,
                   const WallTimes& wall) {
   const Tissue& tissue = simulation.model().tissue;
   const std::vector<Monitor>& monitors = simulation.observer().monitors();
-  const Observation& last = rows.back();
   Json summary;
   summary["scenario"] = scenario.name;
   summary["title"] = scenario.title;
   // A run under way is recorded only when interrupted.
   summary["status"] = simulation.status() == RunStatus::under_way ? "interrupted" : word(simulation.status());
-  summary["stopped_by"] = stopped_by(scenario, simulation, last);
+  summary["stopped_by"] = stopped_by(scenario, simulation);
   summary["failure"] = simulation.failure().empty() ? Json(nullptr) : Json(simulation.failure());
   summary["warnings"] = warnings_of(scenario, simulation);
   summary["failed_cell"] = simulation.failed_cell() ? Json(*simulation.failed_cell()) : Json(nullptr);
-  summary["time_s"] = last.time_s();
+  summary["time_s"] = rows.back().time_s();
   summary["equilibrium_time_s"] = number(simulation.equilibrium_time_s());
   summary["cells"] = tissue.cells.size();
   summary["nodes"] = tissue.free_node_count();
@@ -108,8 +143,9 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
   summary["wall_s"] = wall.total_s;
   summary["wall_solver_s"] = wall.solver_s;
   summary["peak_memory_MB"] = peak_memory_MB();
-  for (const auto& [column, value] : summary_values(simulation.observer().columns(), rows))
-    summary[column->name] = in_json(*column, value);
+  for (const Column* column : simulation.observer().columns())
+    if (column->in_summary != InSummary::nothing)
+      summary[column->name] = in_json(*column, summary_value(*column, rows));
   for (std::size_t m = 0; m < monitors.size(); ++m)
     summary[monitors[m].column()] =
         number(monitors[m].at_s ? value_at(rows, m, *monitors[m].at_s) : last_value(rows, m));
@@ -125,6 +161,29 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
                            {"threads", omp_get_max_threads()},
                            {"scenario_hash", hash(resolved_toml(scenario))}};
   return summary;
+}
+
+std::string outcome_text(const Scenario& scenario, const Tissue& tissue, const Json& summary) {
+  Parts parts(summary);
+  if (have_furrow(axes_of(scenario.embryo)) && number_of(summary, "vml_apical_area_ratio")) {
+    add_furrow(summary, parts);
+  } else {
+    parts.value("fold depth", "furrow_depth_um", " um");
+    parts.value("largest displacement", "max_displacement_um", " um");
+    parts.value("smallest apical area ratio", "min_apical_area_ratio");
+    parts.change("lumen volume ratio", "lumen_volume_ratio");
+  }
+  if (const auto divisions = number_of(summary, "divisions").value_or(0); divisions > 0)
+    parts.text(fmt::format("{} cells after {} division{}", tissue.cells.size(), divisions, divisions == 1 ? "" : "s"));
+  parts.change("tissue volume ratio", "tissue_volume_ratio");
+  return parts.line();
+}
+
+std::string crossing_text(const Scenario& scenario, const Json& summary) {
+  const auto time_s = number_of(summary, "self_intersections_time_s");
+  if (!time_s) return "";
+  return fmt::format("self-intersects since {} ({} pairs of faces at most); later results are unphysical{}",
+                     moment(*time_s), summary.at("self_intersections").get<int>(), crossing_remedy(scenario));
 }
 
 std::string processor_name() {

@@ -1,5 +1,6 @@
 #include "scenario/differences.hpp"
 
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <map>
@@ -33,6 +34,11 @@ Values values_of(std::string_view text) {
 }
 
 }  // namespace
+
+std::string KeyDifference::text() const {
+  const auto shown = [](const std::string& value) { return value.empty() ? "missing" : value; };
+  return fmt::format("{} was {} and is now {}", key, shown(a), shown(b));
+}
 
 std::vector<KeyDifference> scenario_differences(std::string_view a, std::string_view b) {
   std::map<std::string, KeyDifference> all;

@@ -133,7 +133,12 @@ Problem read(const toml::node& node, const Row& row, const Slot& slot) {
 /// Returns what to set the key to, with the nearest word for a misspelt one.
 std::string remedy_for(const toml::node& node, const Row& row) {
   const std::vector<std::string> words(row.allowed.words.begin(), row.allowed.words.end());
-  const auto nearest = nearest_name(node.value_or(std::string()), words);
+  std::string word = node.value_or(std::string());
+  if (const toml::array* items = node.as_array())
+    for (const toml::node& item : *items)
+      if (const auto text = item.value<std::string>(); word.empty() && text && std::ranges::count(words, *text) == 0)
+        word = *text;
+  const auto nearest = nearest_name(word, words);
   return row.remedy() + (nearest ? fmt::format(" (nearest match: \"{}\")", *nearest) : "");
 }
 

@@ -114,7 +114,8 @@ std::span<const std::string_view> expectation_names() {
   // Output variables, and other machine-independent numbers of summary.json.
   static const std::vector<std::string_view> names = [] {
     std::vector<std::string_view> all;
-    for (const Column* column : summary_columns(all_columns())) all.push_back(column->name);
+    for (const Column& column : columns())
+      if (column.in_summary != InSummary::nothing) all.push_back(column.name);
     all.insert(all.end(), {"equilibrium_time_s", "time_s", "cells", "nodes"});
     return all;
   }();

@@ -7,7 +7,6 @@
 #include "record/archive.hpp"
 #include "record/results.hpp"
 #include "record/run_directory.hpp"
-#include "record/run_scenario.hpp"
 #include "scenario/print.hpp"
 #include "show/report.hpp"
 
@@ -96,14 +95,15 @@ void RecordedRun::look_for_checkpoint(const Scenario& scenario) {
     notes_.push_back(fmt::format("{} was written by version {}; further results may differ in the last digits",
                                  out_.string(), checkpoint_->program));
   // The criteria that ended the run may have changed; the next step evaluates them.
-  if (other_stop(checkpoint_->scenario, now)) checkpoint_->run.criterion_met = checkpoint_->run.at_equilibrium = false;
+  if (other_stop(checkpoint_->scenario, now))
+    checkpoint_->run.measures.is_over = checkpoint_->run.at_equilibrium = false;
 }
 
 bool RecordedRun::begin() {
   const bool goes_on = checkpoint_.has_value();
   if (goes_on) {
     try {
-      simulation_.go_on_from(std::move(checkpoint_->run), checkpoint_->record.rows.back());
+      simulation_.go_on_from(std::move(checkpoint_->run));
     } catch (const UnfitMemory& error) {
       throw FileError(out_.string() + ": the checkpoint is damaged: " + error.what());
     }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/directory_lock.hpp"
+#include "core/files.hpp"
 #include "record/recorder.hpp"
 #include "scenario/load.hpp"
 #include "show/report_writer.hpp"

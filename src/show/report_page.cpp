@@ -5,10 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "core/base64.hpp"
 #include "core/errors.hpp"
 #include "core/markup.hpp"
-#include "record/deflate.hpp"
 
 namespace plica {
 namespace {

@@ -4,7 +4,6 @@
 #include "core/files.hpp"
 #include "measure/reference_run.hpp"
 #include "record/results.hpp"
-#include "record/run_scenario.hpp"
 #include "scenario/embryo_axes.hpp"
 
 namespace plica {

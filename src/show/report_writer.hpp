@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "record/record_listener.hpp"
+#include "record/recorder.hpp"
 #include "show/report_frames.hpp"
 
 namespace plica {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/errors.hpp"
-#include "record/run_scenario.hpp"
+#include "record/results.hpp"
 #include "scenario/words.hpp"
 #include "show/named.hpp"
 

@@ -1,11 +1,16 @@
 #include "simulation/controls.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "core/clock.hpp"
 #include "core/units.hpp"
 #include "scenario/acting.hpp"
 #include "scenario/words.hpp"
+#include "tissue/mesh_quality.hpp"
 
 namespace plica {
 namespace {
@@ -49,6 +54,24 @@ void take_pulses(const PulseInput& pulse, RunControls& controls) {
   controls.program_points_s.push_back(controls.end_s);
 }
 
+// First multiple of `period` that exceeds `time` by more than `apart`.
+double next_multiple(double time, double period, double apart) {
+  return (std::floor((time + apart) / period + 1e-9) + 1) * period;
+}
+
+// Required end of an adaptive step: the last of the points that form one instant with the next one.
+double next_stop(const RunControls& controls, double time_s, double latest_s) {
+  std::vector<double> points = {latest_s};
+  if (controls.frame_every_s > 0) points.push_back(next_multiple(time_s, controls.frame_every_s, instant_s));
+  for (const double point : controls.program_points_s)
+    if (!has_come(point, time_s)) points.push_back(point);
+  const double first = *std::ranges::min_element(points);
+  double last = first;
+  for (const double point : points)
+    if (has_come(point, first)) last = std::max(last, point);
+  return std::min(last, latest_s);
+}
+
 }  // namespace
 
 RunControls make_controls(const Scenario& scenario) {
@@ -70,6 +93,70 @@ RunControls make_controls(const Scenario& scenario) {
     if (input.at_s) controls.program_points_s.push_back(*input.at_s);
   }
   return controls;
+}
+
+StepLength::StepLength(const RunControls& controls, double wanted_s)
+    : wanted_s_(controls.fixed_step_s.value_or(wanted_s > 0 ? wanted_s : controls.first_step_s)) {}
+
+double StepLength::propose_end_s(const RunControls& controls, double time_s, double until_s) const {
+  const double latest = std::min(controls.end_s, until_s);
+  if (const auto& fixed_s = controls.fixed_step_s) {
+    // Stay on the grid of the fixed step, also after a halved step.
+    double stop = std::min(latest, next_multiple(time_s, *fixed_s, 1e-6 * *fixed_s));
+    for (const double jump : controls.program_jumps_s)
+      if (!has_come(jump, time_s)) stop = std::min(stop, jump);
+    return wanted_s_ < (stop - time_s) * (1 - 1e-9) ? time_s + wanted_s_ : stop;
+  }
+  const double stop = next_stop(controls, time_s, latest), left = stop - time_s;
+  // Equal steps to the next stop instead of long ones and a remainder; up to a quarter longer than wanted if that saves
+  // a step, but to second order at most twice the last (possible_order).
+  const double stretch = controls.scheme.order == TimeOrder::first ? 1.25 : 1.2;
+  const double steps = std::ceil(left / wanted_s_ * (1 - 1e-12));
+  if (steps <= 1 || (steps == 2 && left <= std::min(stretch * wanted_s_, controls.max_step_s))) return stop;
+  return time_s + (steps <= 3 ? left / steps : wanted_s_);
+}
+
+bool StepLength::accept(const RunControls& controls, const State& before, const State& after) {
+  const double duration_s = after.trend.step_s;
+  if (controls.fixed_step_s) {
+    wanted_s_ = *controls.fixed_step_s;
+    return true;
+  }
+  const std::optional<StepError> error = step_error(before, after);
+  if (!error) {
+    wanted_s_ = duration_s;
+    return true;
+  }
+  const double allowed = controls.position_tolerance_um / std::max(error->um, 1e-300);
+  const double factor = 0.9 * (error->order == TimeOrder::first ? std::sqrt(allowed) : std::cbrt(allowed));
+  if (factor < 0.6) {
+    wanted_s_ = duration_s * std::max(factor, 0.2);
+    return false;
+  }
+  wanted_s_ = std::min(controls.max_step_s, std::max(duration_s * std::clamp(factor, 0.5, 2.0), 1e-9));
+  return true;
+}
+
+bool StepLength::halve(const RunControls& controls, double failed_s) {
+  wanted_s_ = 0.5 * failed_s;
+  return wanted_s_ > 1e-4 * controls.fixed_step_s.value_or(controls.first_step_s);
+}
+
+std::optional<Standstill> standstill(const Pace& pace, const RunControls& controls, const Model& model,
+                                     const State& state) {
+  constexpr double hard_step = 5, most_left = 10'000;  // Newton iterations
+  constexpr double crushed = 0.01;
+  const double advance_s = state.time_s - pace.since_s, step_s = advance_s / pace.steps;
+  const double per_step = static_cast<double>(pace.iterations) / pace.steps;
+  const double left = pace.iterations * (controls.end_s - state.time_s) / advance_s;
+  if (per_step < hard_step || left < most_left) return std::nullopt;
+  if (controls.fixed_step_s && step_s > 0.5 * *controls.fixed_step_s) return std::nullopt;
+  const CornerRatio worst = least_corner_ratio(model.tissue, state.positions);
+  if (worst.ratio > crushed) return std::nullopt;
+  const int id = model.tissue.cells[worst.cell.index()].lineage.id;
+  return Standstill{worst.cell, fmt::format("forces crush cell {} (a corner has {:.1g} of its volume), and {} steps of "
+                                            "{:.1g} s on average took {:.0f} Newton iterations each",
+                                            id, worst.ratio, pace.steps, step_s, per_step)};
 }
 
 }  // namespace plica

@@ -10,11 +10,8 @@
 
 namespace plica {
 
-FullModel::FullModel(std::unique_ptr<Model> model, Mirror mirror)
-    : model_(std::move(model)), mirror_(std::move(mirror)), state_(rest_state(*model_)) {}
-
-FullModel::FullModel(const FullModel& other)
-    : model_(std::make_unique<Model>(*other.model_)), mirror_(other.mirror_), state_(other.state_) {}
+FullModel::FullModel(Model model, Mirror mirror)
+    : model_(std::move(model)), mirror_(std::move(mirror)), state_(rest_state(model_)) {}
 
 // State without the internal variables of laws.
 State FullModel::whole_of(const Model& side, const State& state) const {
@@ -41,7 +38,7 @@ State FullModel::whole_of(const Model& side, const State& state) const {
   std::size_t first = 0;  // of the obstacle's contacts on the side
   for (std::size_t o = 0; o < side.obstacles.size(); ++o) {
     const std::span<const NodeId> nodes = side.obstacles[o]->nodes();
-    for (const NodeId of_whole : model_->obstacles[o]->nodes()) {
+    for (const NodeId of_whole : model_.obstacles[o]->nodes()) {
       const NodeId node = mirror_.image(of_whole).node;
       const auto contact = first + static_cast<std::size_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
       // Contact forces at nodes on a mirror plane are divided by the share of the side.
@@ -57,14 +54,14 @@ State FullModel::follow(const Model& side, const State& state) {
   State next = whole_of(side, state);
   const BackwardDifference rates = rates_of(state_, next);
   const Vectors earlier = rates.ahead > 0 ? earlier_positions(state_) : Vectors();
-  next.internals = next_internals(*model_, {.positions = next.positions,
-                                            .previous_positions = state_.positions,
-                                            .previous_velocities = state_.velocities,
-                                            .rate_s = rates.rate_s,
-                                            .end_time_s = next.time_s,
-                                            .earlier_positions = earlier,
-                                            .ahead = rates.ahead,
-                                            .internals = state_.internals});
+  next.internals = next_internals(model_, {.positions = next.positions,
+                                           .previous_positions = state_.positions,
+                                           .previous_velocities = state_.velocities,
+                                           .rate_s = rates.rate_s,
+                                           .end_time_s = next.time_s,
+                                           .earlier_positions = earlier,
+                                           .ahead = rates.ahead,
+                                           .internals = state_.internals});
   return std::exchange(state_, std::move(next));
 }
 
@@ -79,11 +76,11 @@ std::vector<double> FullModel::take_activities(std::size_t law, const std::vecto
       throw UsageError(
           fmt::format("{}: cells {} and {} are mirror images, and their activities are {} and {}; give "
                       "both the same value, or remove embryo.mirror",
-                      model_->laws[law]->label(), c, own.index(), activities[c], activities[own.index()]));
+                      model_.laws[law]->label(), c, own.index(), activities[c], activities[own.index()]));
   std::vector<double> of_side;
   for (const CellId cell : mirror_.origins)
     if (!activities.empty()) of_side.push_back(activities[cell.index()]);
-  state_.internals[law] = model_->laws[law]->with_activities(state_.internals[law], activities);
+  state_.internals[law] = model_.laws[law]->with_activities(state_.internals[law], activities);
   return of_side;
 }
 

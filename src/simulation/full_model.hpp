@@ -1,7 +1,6 @@
 // Full model of a symmetric embryo of which one side is solved; used for output and measures.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "mechanics/model.hpp"
@@ -14,14 +13,9 @@ namespace plica {
 class FullModel {
  public:
   /// Starts in the reference state.
-  FullModel(std::unique_ptr<Model> model, Mirror mirror);
-  FullModel(const FullModel& other);
-  FullModel(FullModel&&) noexcept = default;
-  FullModel& operator=(const FullModel&) = delete;
-  FullModel& operator=(FullModel&&) noexcept = default;
-  ~FullModel() = default;
+  FullModel(Model model, Mirror mirror);
 
-  [[nodiscard]] const Model& model() const { return *model_; }
+  [[nodiscard]] const Model& model() const { return model_; }
   [[nodiscard]] const State& state() const { return state_; }
 
   /// Number of copies of the side in the full model: 2 or 4.
@@ -42,7 +36,7 @@ class FullModel {
  private:
   [[nodiscard]] State whole_of(const Model& side, const State& state) const;
 
-  std::unique_ptr<Model> model_;
+  Model model_;
   Mirror mirror_;
   State state_;
 };

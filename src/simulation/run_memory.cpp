@@ -5,8 +5,8 @@
 namespace plica {
 
 bool has_ended(const RunMemory& run, const RunControls& controls) {
-  const bool before_end = run.criterion_met || (run.at_equilibrium && controls.stop_at_equilibrium);
-  return before_end || has_come(controls.end_s, run.state.time_s);
+  return run.measures.is_over || (run.at_equilibrium && controls.stop_at_equilibrium) ||
+         has_come(controls.end_s, run.state.time_s);
 }
 
 std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "measure/observation.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/model.hpp"
 #include "simulation/controls.hpp"
-#include "simulation/pace.hpp"
 
 namespace plica {
 
@@ -25,11 +25,11 @@ struct PastDivision {
 /// State of a run between two steps. With the model of the scenario it determines the rest of the run bitwise.
 struct RunMemory {
   State state;
+  Observation measures;  // of the last accepted step, or of the reference state
   int steps = 0;
   int divisions = 0;                         // number of cells that divided
   std::optional<double> equilibrium_time_s;  // first time with all nodes below the stop speed
   bool at_equilibrium = false;               // at present
-  bool criterion_met = false;                // a criterion of [stop] ended the run
   double wanted_step_s = 0;                  // length of the next step; 0: no step yet
   Pace pace;                                 // until it is known, then from there on
   double computing_s = 0;                    // wall time of its steps

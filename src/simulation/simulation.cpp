@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <iterator>
@@ -81,7 +82,7 @@ Simulation::Parts parts_of(const Scenario& scenario) {
   parts.watch = make_watch(scenario, *parts.model);
   parts.scenario = std::make_shared<const Scenario>(scenario);
   if (auto side = make_solved_side(scenario, *parts.model))
-    parts.full_model.emplace(std::exchange(parts.model, std::move(side->model)), std::move(side->mirror));
+    parts.full_model.emplace(std::move(*std::exchange(parts.model, std::move(side->model))), std::move(side->mirror));
   return parts;
 }
 
@@ -99,7 +100,7 @@ Simulation::Simulation(Parts parts)
     std::ranges::copy(law->program_jumps_s(), std::back_inserter(controls_.program_jumps_s));
   }
   now_.state = rest_state(*model_);
-  measures_ = observer_.observe_rest(model(), state());
+  now_.measures = observer_.observe({model(), state()}, nullptr);
   renew_stepper();
 }
 
@@ -112,7 +113,6 @@ Simulation::Simulation(const Simulation& other)
       now_(other.memory()),
       step_length_(other.step_length_),
       observer_(other.observer_),
-      measures_(other.measures_),
       has_begun_(other.has_begun_),
       failure_(other.failure_),
       failed_cell_(other.failed_cell_) {
@@ -187,7 +187,7 @@ void Simulation::set_cell_array(const std::string& name, CellArray values) {
   now_.outside_arrays[name] = std::move(values);
 }
 
-void Simulation::go_on_from(RunMemory memory, Observation measures) {
+void Simulation::go_on_from(RunMemory memory) {
   for (const auto& past : memory.past_divisions) {
     if (const auto why = why_unfit(*past, *model_)) throw UnfitMemory(*why);
     State then = rest_state(*model_);
@@ -198,11 +198,12 @@ void Simulation::go_on_from(RunMemory memory, Observation measures) {
   if (const auto why = why_unfit(memory, *model_)) throw UnfitMemory(*why);
   if (memory.whole_internals.size() != (full_model_ ? full_model_->model().laws.size() : 0))
     throw UnfitMemory("its mirror planes do not fit this embryo");
+  if (memory.measures.monitors.size() != observer_.monitors().size())
+    throw UnfitMemory("its output variables do not fit the monitors");
   for (const auto& [name, values] : memory.outside_arrays)
     if (values.size() != model().tissue.cells.size()) throw UnfitMemory("its cell arrays do not fit this embryo");
   now_ = std::move(memory);
   if (full_model_) full_model_->go_to(*model_, now_.state, std::move(now_.whole_internals));
-  measures_ = std::move(measures);
   step_length_ = StepLength(controls_, now_.wanted_step_s);
   grown_ = grown(*model_, now_.state.time_s);
   renew_stepper();
@@ -256,22 +257,13 @@ EnergyFlow Simulation::account_for_energy(const State& before) {
 RunStatus Simulation::status() const {
   if (!failure_.empty()) return RunStatus::failed;
   if (!has_ended(now_, controls_)) return RunStatus::under_way;
-  const bool before_end = now_.criterion_met || (now_.at_equilibrium && controls_.stop_at_equilibrium);
-  return before_end && now_.at_equilibrium ? RunStatus::equilibrium : RunStatus::end_time;
+  const bool is_enough = controls_.stop_at_equilibrium || criterion_met();
+  return now_.at_equilibrium && is_enough ? RunStatus::equilibrium : RunStatus::end_time;
 }
 
 const char* word(RunStatus status) {
-  switch (status) {
-    case RunStatus::under_way:
-      return "under_way";
-    case RunStatus::equilibrium:
-      return "equilibrium";
-    case RunStatus::end_time:
-      return "end_time";
-    case RunStatus::failed:
-      return "failed";
-  }
-  return "";
+  constexpr std::array words = {"under_way", "equilibrium", "end_time", "failed"};
+  return words[static_cast<std::size_t>(status)];
 }
 
 RunStatus Simulation::run_until(double time_s) {
@@ -312,12 +304,11 @@ bool Simulation::step(double until_s) {
                           frame_is_due,
                           now_.at_equilibrium,
                           energy};
-  measures_ = observer_.observe(model(), step, now_.computing_s);
-  now_.criterion_met = measures_.is_over;
+  now_.measures = observer_.observe({model(), step.state, now_.computing_s}, &step);
   if (++steps_with_factor_ >= most_steps_with_factor || !stepper_->keeps_factor() || !due.empty() ||
       has_come(until_s, state.time_s) || has_ended(now_, controls_))
     forget_factor();
-  for (SimulationListener* listener : listeners_) listener->step_accepted(step, measures_);
+  for (SimulationListener* listener : listeners_) listener->step_accepted(step, now_.measures);
   divide(due);
   return true;
 }

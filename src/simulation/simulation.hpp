@@ -14,7 +14,6 @@
 #include "simulation/controls.hpp"
 #include "simulation/full_model.hpp"
 #include "simulation/run_memory.hpp"
-#include "simulation/step_length.hpp"
 
 namespace plica {
 
@@ -84,7 +83,7 @@ class Simulation {
   [[nodiscard]] double time_s() const { return now_.state.time_s; }
   [[nodiscard]] int steps() const { return now_.steps; }
   [[nodiscard]] int divisions() const { return now_.divisions; }
-  [[nodiscard]] bool criterion_met() const { return now_.criterion_met; }
+  [[nodiscard]] bool criterion_met() const { return now_.measures.is_over; }
   [[nodiscard]] const std::optional<double>& equilibrium_time_s() const { return now_.equilibrium_time_s; }
   /// Wall time of all steps, including those before a checkpoint, s.
   [[nodiscard]] double computing_s() const { return now_.computing_s; }
@@ -96,7 +95,7 @@ class Simulation {
   /// Skip these columns from the next step on.
   void leave_out(const std::function<bool(const Column&)>& which) { observer_.leave_out(which); }
   /// Measures of the last accepted step, or of the reference state.
-  [[nodiscard]] const Observation& measures() const { return measures_; }
+  [[nodiscard]] const Observation& measures() const { return now_.measures; }
   [[nodiscard]] const Observer& observer() const { return observer_; }
 
   /// Checkpoint: everything the next step depends on besides the scenario. A reused factorization is forgotten.
@@ -105,9 +104,9 @@ class Simulation {
   /// step was asked for, before a division and at the end.
   [[nodiscard]] bool is_resumable() const { return steps_with_factor_ == 0; }
 
-  /// Continue from a checkpoint of the same scenario; call in the reference state only. `measures`: those of its last
-  /// step. Throws UnfitMemory if it does not fit this model. Listeners are not notified of past divisions.
-  void go_on_from(RunMemory memory, Observation measures);
+  /// Continue from a checkpoint of the same scenario; call in the reference state only. Throws UnfitMemory if it does
+  /// not fit this model. Listeners are not notified of past divisions.
+  void go_on_from(RunMemory memory);
 
   /// Override the activity time course of a law (identifier: contraction.apical) with factors on the scenario's values;
   /// cells, >= 0 or GivenActivities::as_programmed; empty: restore the time courses. A run at equilibrium continues.
@@ -148,7 +147,6 @@ class Simulation {
   mutable int steps_with_factor_ = 0;  // taken since the stepper had none to reuse
   StepLength step_length_;
   Observer observer_;
-  Observation measures_;
   bool has_begun_ = false;  // since construction or resumption: divisions due then are done
   std::string failure_;
   std::optional<int> failed_cell_;

@@ -10,7 +10,6 @@
 #include "measure/energy_norm.hpp"
 #include "record/mesh_writer.hpp"
 #include "record/results.hpp"
-#include "record/run_scenario.hpp"
 #include "tissue/hexahedron.hpp"
 
 namespace plica {

@@ -1,6 +1,6 @@
 #include "study/csv_fields.hpp"
 
-#include "core/byte_order_mark.hpp"
+#include "core/numbers.hpp"
 
 namespace plica {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "measure/measure_set.hpp"
-#include "record/series_rows.hpp"
+#include "record/csv.hpp"
 #include "record/summary.hpp"
 #include "scenario/suggest.hpp"
 #include "study/unfinished_run.hpp"

@@ -8,7 +8,6 @@
 #include <new>
 #include <nlohmann/json.hpp>
 
-#include "core/directory_lock.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "show/recorded_run.hpp"

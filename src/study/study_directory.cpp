@@ -55,9 +55,7 @@ void require_same_plica(const fs::path& directory, const Json& begun) {
 std::string difference(const std::string& before, const std::string& now) {
   const std::vector<KeyDifference> all = scenario_differences(before, now);
   if (all.empty()) return "";
-  const auto shown = [](const std::string& value) { return value.empty() ? "missing" : value; };
-  const std::string others = all.size() > 1 ? fmt::format(" (and {} more)", all.size() - 1) : "";
-  return fmt::format("{} was {} and is now {}{}", all.front().key, shown(all.front().a), shown(all.front().b), others);
+  return all.front().text() + (all.size() > 1 ? fmt::format(" (and {} more)", all.size() - 1) : "");
 }
 
 constexpr const char* change_back = "revert the change, restart with --overwrite, or give another --out";

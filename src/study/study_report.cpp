@@ -16,7 +16,7 @@
 #include "core/files.hpp"
 #include "core/numbers.hpp"
 #include "core/version.hpp"
-#include "record/run_scenario.hpp"
+#include "record/results.hpp"
 #include "scenario/embryo_axes.hpp"
 #include "show/packing.hpp"
 #include "show/report_page.hpp"

@@ -7,10 +7,13 @@
 #include "core/errors.hpp"
 #include "core/version.hpp"
 #include "record/archive.hpp"
+#include "record/csv.hpp"
 #include "scenario/print.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;
+
+constexpr const char* series_csv = "series.csv";
 
 UnfinishedRun::UnfinishedRun(fs::path directory, double every_s, const Scenario& scenario, Simulation& simulation)
     : directory_(std::move(directory)),
@@ -26,14 +29,18 @@ std::vector<Observation> UnfinishedRun::begin() {
   try {
     std::string complaint;
     std::optional<Checkpoint> kept = read_checkpoint(directory_, complaint);
-    if (!kept || kept->record.rows.empty() || kept->program != checkpoint_.program ||
-        kept->scenario != checkpoint_.scenario || kept->at_rest != checkpoint_.at_rest)
+    if (!kept || kept->program != checkpoint_.program || kept->scenario != checkpoint_.scenario ||
+        kept->at_rest != checkpoint_.at_rest)
       return at_rest;
-    simulation_.go_on_from(std::move(kept->run), kept->record.rows.back());
+    open_table(kept->record.table_bytes[series_csv]);
+    std::vector<Observation> rows = read_series_rows(directory_ / series_csv, simulation_.observer());
+    saved_rows_ = rows.size();
+    simulation_.go_on_from(std::move(kept->run));
     earlier_s_ = kept->record.wall_s;
     next_s_ += earlier_s_;
-    return std::move(kept->record.rows);
+    return rows;
   } catch (const FileError&) {  // damaged: only time is lost
+    table_.reset(), saved_rows_ = 0;
     return at_rest;
   }
 }
@@ -48,6 +55,11 @@ bool UnfinishedRun::can_lock() {
   }
 }
 
+void UnfinishedRun::open_table(std::uint64_t keep_bytes) {
+  const fs::path file = directory_ / series_csv;
+  table_ = std::make_unique<RowFile>(file, begin_table(file, series_header(simulation_.observer()), keep_bytes));
+}
+
 void UnfinishedRun::step_accepted(const std::vector<Observation>& rows, double wall_s) {
   if (!can_archive() || wall_s < next_s_ || !simulation_.is_resumable()) return;
   next_s_ = wall_s + every_s_;
@@ -56,7 +68,11 @@ void UnfinishedRun::step_accepted(const std::vector<Observation>& rows, double w
   if (!can_lock()) return;
   if (!files_) files_ = std::make_unique<CheckpointFiles>(directory_);
   checkpoint_.run = simulation_.memory();
-  checkpoint_.record.rows = rows;
+  if (!table_) open_table(0);
+  for (; saved_rows_ < rows.size(); ++saved_rows_)
+    table_->append(series_row(rows[saved_rows_], simulation_.observer().columns()));
+  table_->sync();
+  checkpoint_.record.table_bytes[series_csv] = table_->size_bytes();
   checkpoint_.record.wall_s = wall_s;
   checkpoint_.record.solver_s = simulation_.computing_s();
   files_->write(checkpoint_, Sync::now);

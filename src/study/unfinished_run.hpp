@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "core/directory_lock.hpp"
+#include "core/files.hpp"
 #include "measure/observation.hpp"
-#include "record/checkpoint_files.hpp"
+#include "record/checkpoint.hpp"
 #include "scenario/scenario.hpp"
 #include "simulation/simulation.hpp"
 
@@ -33,6 +33,7 @@ class UnfinishedRun {
 
  private:
   [[nodiscard]] bool can_lock();
+  void open_table(std::uint64_t keep_bytes);
 
   std::filesystem::path directory_;
   double every_s_, next_s_;
@@ -40,6 +41,8 @@ class UnfinishedRun {
   Checkpoint checkpoint_;
   std::unique_ptr<DirectoryLock> lock_;
   std::unique_ptr<CheckpointFiles> files_;
+  std::unique_ptr<RowFile> table_;
+  std::size_t saved_rows_ = 0;
   double earlier_s_ = 0;
 };
 

@@ -72,7 +72,7 @@ SERIES = (  # of an embryo without contact
     "self_intersections refused_steps vml_height_um min_apical_area_ratio min_corner_jacobian_ratio "
     "shell_fluid_um3 flank_volume_ratio active_work_nN_um stored_energy_nN_um dissipated_energy_nN_um "
     "energy_imbalance_ratio flank_section_area_ratio short_edges midline_waviness_um bending_error max_displacement_um "
-    "mean_height_um tissue_volume_ratio"
+    "mean_height_um tissue_volume_ratio min_scaled_jacobian highest_points_distance_um max_shell_penetration_um"
 ).split()
 CELLS = (
     "time_s cell_id mother_id generation x_um y_um z_um volume_um3 apical_area_um2 basal_area_um2 height_um "

@@ -9,10 +9,10 @@
 #include <type_traits>
 
 #include "core/background.hpp"
-#include "core/base64.hpp"
 #include "core/child_process.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/markup.hpp"
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "core/threads.hpp"
@@ -96,7 +96,7 @@ class Gate {
 TEST(Background, DoesJobsInTheirOrderOnAnotherThread) {
   std::vector<int> done;
   std::thread::id worker;
-  Background background(3);
+  Background background;
   for (int i = 0; i < 100; ++i)
     background.add([&, i] {
       worker = std::this_thread::get_id();
@@ -112,7 +112,7 @@ TEST(Background, DoesJobsInTheirOrderOnAnotherThread) {
 // In the midst of a job its thread may hold a lock, which a child process would find locked for ever.
 TEST(Background, ChildProcessesStartBetweenJobs) {
   std::atomic<bool> is_at_work = false;
-  Background background(50);
+  Background background;
   for (int i = 0; i < 50; ++i)
     background.add([&] {
       is_at_work = true;
@@ -124,29 +124,13 @@ TEST(Background, ChildProcessesStartBetweenJobs) {
   background.finish();
 }
 
-TEST(Background, TakesNoMoreThanItMayHold) {
-  Gate gate;
-  std::atomic<int> taken = 0;
-  Background background(2);
-  background.add([&] { gate.wait(); });
-  std::thread giver([&] {
-    for (int i = 0; i < 10; ++i, ++taken) background.add([] {});
-  });
-  for (int i = 0; i < 50 && taken < 3; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  EXPECT_LE(taken, 3);  // two that wait, and one whose place the first job left while it was being done
-  gate.open();
-  giver.join();
-  background.finish();
-  EXPECT_EQ(taken, 10);
-}
-
 TEST(Background, AFaultIsToldOnceAndEndsTheWork) {
-  const std::vector<std::function<void(Background&)>> tellers = {
-      [](Background& b) { b.add([] {}); }, [](Background& b) { b.check(); }, [](Background& b) { b.finish(); }};
+  const std::vector<std::function<void(Background&)>> tellers = {[](Background& b) { b.add([] {}); },
+                                                                 [](Background& b) { b.finish(); }};
   for (const auto& tell : tellers) {
     Gate gate;
     std::atomic<int> later = 0;
-    Background background(4);
+    Background background;
     background.add([&] {
       gate.wait();
       throw std::runtime_error("the disk is full");
@@ -157,7 +141,6 @@ TEST(Background, AFaultIsToldOnceAndEndsTheWork) {
     while (!background.has_failed()) std::this_thread::yield();
     EXPECT_EQ(error_of<std::runtime_error>([&] { tell(background); }), "the disk is full");
     EXPECT_FALSE(background.has_failed());
-    background.check();
     background.add([&] { ++later; });
     background.finish();
     EXPECT_EQ(later, 0);
@@ -175,7 +158,7 @@ TEST(Background, AFaultReachesWhoWaitsForAPlace) {
 TEST(Background, WhatWaitsIsDoneBeforeItEnds) {
   int done = 0;
   {
-    Background background(5);
+    Background background;
     for (int i = 0; i < 5; ++i) background.add([&] { ++done; });
   }
   EXPECT_EQ(done, 5);
@@ -332,18 +315,6 @@ TEST_F(FilesTest, RowsGoOnWhereTheCheckpointWas) {
   EXPECT_EQ(read_file(path), "a\nb\nd\n");
   RowFile(path).append("anew");
   EXPECT_EQ(read_file(path), "anew\n");
-}
-
-TEST_F(FilesTest, RowsMoveAndDoNotCopy) {
-  static_assert(!std::is_copy_constructible_v<RowFile> && std::is_nothrow_move_constructible_v<RowFile>);
-  RowFile first(folder / "first"), second(folder / "second");
-  first.append("a");
-  RowFile moved(std::move(first));
-  moved.append("b");
-  second = std::move(moved);
-  second.append("c");
-  EXPECT_EQ(read_file(folder / "first"), "a\nb\nc\n");
-  EXPECT_EQ(read_file(folder / "second"), "");
 }
 
 TEST_F(FilesTest, ARowThatDoesNotFitIsAnErrorAndIsCutOff) {

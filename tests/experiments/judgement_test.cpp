@@ -1,6 +1,4 @@
 // Files of experiments, their quantities as formulas, and what is judged of them.
-#include "experiments/judgement.hpp"
-
 #include "core/files.hpp"
 #include "experiments/experiments.hpp"
 #include "experiments/formula.hpp"

@@ -41,20 +41,16 @@ inline void expect_resumable_through_a_division(const Extension& extension,
   const std::vector<std::string> overrides = {also, "division.floor.at_min=0.1", "division.floor.growth_min=0.2",
                                               "time.end_min=0.4", "time.integrator=\"bdf2\""};
   const auto fresh = [&] { return Simulation(extended(extension, overrides, "drosophila-division")); };
-  struct Kept {
-    RunMemory memory;
-    Observation measures;
-  };
-  std::vector<Kept> steps;
+  std::vector<RunMemory> steps;
   Simulation whole = fresh();
-  while (whole.step()) steps.push_back({whole.memory(), whole.measures()});
+  while (whole.step()) steps.push_back(whole.memory());
   ASSERT_EQ(whole.status(), RunStatus::end_time) << whole.failure();
   ASSERT_GT(whole.divisions(), 0);
   int resumed = 0;
   for (std::size_t k = 0; k < steps.size(); k += 7, ++resumed) {
     SCOPED_TRACE(testing::Message() << "from step " << k + 1 << " of " << steps.size());
     Simulation rest = fresh();
-    go_on_by_bytes(rest, steps[k].memory, steps[k].measures);
+    go_on_by_bytes(rest, steps[k]);
     while (rest.step()) (void)rest.memory();  // which makes it forget its factor, as the whole run
     EXPECT_EQ(rest.status(), whole.status());
     EXPECT_EQ(rest.steps(), whole.steps());

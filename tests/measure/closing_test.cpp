@@ -3,7 +3,6 @@
 
 #include "measure/cells.hpp"
 #include "measure/cross_section.hpp"
-#include "measure/speed_history.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "mechanics/contact/self_contact.hpp"
 #include "mechanics/obstacles/vitelline.hpp"

@@ -6,7 +6,7 @@
 #include "measure/columns.hpp"
 #include "measure/measure_set.hpp"
 #include "measure/observation.hpp"
-#include "record/series_rows.hpp"
+#include "record/csv.hpp"
 #include "record/summary.hpp"
 #include "simulation/simulation.hpp"
 #include "support/prisms.hpp"
@@ -272,12 +272,7 @@ std::vector<Observation> three_rows() {
 
 TEST(Columns, TheSummaryHasWhatTheRowSays) {
   const std::vector<Observation> rows = three_rows();
-  const auto value = [&](std::string_view name) {
-    for (const auto& [column, found] : summary_values(all_columns(), rows))
-      if (column->name == name) return found;
-    ADD_FAILURE() << name;
-    return std::optional<double>();
-  };
+  const auto value = [&](std::string_view name) { return summary_value(columns()[column_index(name)], rows); };
   EXPECT_EQ(value("furrow_depth_um"), 3);
   EXPECT_EQ(value("max_volume_error"), 3e-10);
   EXPECT_EQ(value("min_scaled_jacobian"), 0.7);
@@ -319,13 +314,13 @@ TEST(MeasureSets, NoColumnIsEmpty) {
     std::vector<Observation> rows = {simulation.measures()};
     for (int step = 0; step < 3 && simulation.step(); ++step) rows.push_back(simulation.measures());
     for (const Column* column : simulation.observer().columns())
-      if (column->in_series) {
+      if (column->of_step) {
         EXPECT_TRUE(rows.back()[*column]) << column->name;
       }
     const std::vector<std::string> names = series_header(simulation.observer());
     EXPECT_TRUE(std::ranges::none_of(names, [](const std::string& name) { return name.starts_with("v"); }));
-    for (const auto& [column, value] : summary_values(simulation.observer().columns(), rows))
-      EXPECT_TRUE(value || column->name.ends_with("_time_s")) << column->name;
+    for (const Column* column : simulation.observer().columns())
+      EXPECT_TRUE(summary_value(*column, rows) || column->name.ends_with("_time_s")) << column->name;
     EXPECT_EQ(make_summary(scenario, simulation, rows, {}).contains("vml_height_um"), false);
   }
 }
@@ -347,7 +342,10 @@ TEST(MeasureSets, OneThatDoesNotFitIsAnErrorWithARemedy) {
     return error_of<ScenarioError>([&] { return Simulation(scenario_of(sheet + more)); });
   };
   EXPECT_SAYS(refusal("[measure]\nsets = [\"lumen\"]\n"), "measure.sets: \"lumen\" has nothing to measure");
-  EXPECT_SAYS(refusal("[measure]\nsets = [\"furow\"]\n"), "automatic | fold | furrow");
+  const std::string misspelt = refusal("[measure]\nsets = [\"fold\", \"furow\"]\n");
+  EXPECT_SAYS(misspelt, "automatic | fold | furrow");
+  EXPECT_SAYS(misspelt, "\"furow\" is unknown");
+  EXPECT_SAYS(misspelt, "(nearest match: \"furrow\")");
   const std::string expectation = "[expect]\nlip_distance_um = { value = 3, within = 1 }\n";
   EXPECT_SAYS(refusal(expectation), "expect.lip_distance_um: is not measured; add \"furrow\" to measure.sets");
   EXPECT_EQ(refusal(expectation + "[measure]\nsets = [\"automatic\", \"furrow\"]\n"), "");

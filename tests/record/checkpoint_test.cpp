@@ -7,7 +7,6 @@
 #include <zlib.h>
 
 #include "record/archive.hpp"
-#include "record/checkpoint_files.hpp"
 #include "scenario/print.hpp"
 #include "simulation/simulation.hpp"
 #include "support/checkpoint_fields.hpp"
@@ -33,9 +32,8 @@ struct BlockRun {
     at_rest = make_model(scenario);
     struct Keeper final : SimulationListener {
       Keeper(const Simulation& of, BlockRun& into) : simulation(of), run(into) {}
-      void step_accepted(const AcceptedStep& step, const Observation& measures) override {
-        now.record.rows.push_back(measures);
-        now.record.series_bytes += 100;
+      void step_accepted(const AcceptedStep& step, const Observation& /*measures*/) override {
+        now.record.table_bytes["series.csv"] += 100;
         now.record.frame_times_s.push_back(step.state.time_s);
         now.run = simulation.memory();
         run.checkpoints.push_back(now);
@@ -47,7 +45,6 @@ struct BlockRun {
     Simulation simulation(scenario);
     Keeper keeper(simulation, *this);
     keeper.now = {"0.1.0", resolved_toml(scenario), fingerprint(at_rest->tissue), {}, {}};
-    keeper.now.record.rows.push_back(simulation.measures());
     simulation.listen(keeper);
     simulation.run();
     model = std::make_unique<Model>(simulation.model());
@@ -97,9 +94,8 @@ TEST_F(CheckpointTest, ComesBackAsItWas) {
   ASSERT_FALSE(before.run.state.trend.mean_velocities.empty()) << "second order";
   EXPECT_EQ(after.run.state.trend.mean_velocities, before.run.state.trend.mean_velocities);
   EXPECT_EQ(after.run.state.trend.earlier_s, before.run.state.trend.earlier_s);
-  EXPECT_EQ(after.record.rows.size(), before.record.rows.size());
-  EXPECT_EQ(after.record.rows.back().values, before.record.rows.back().values);
-  EXPECT_EQ(after.record.rows.back().monitors, before.record.rows.back().monitors);
+  EXPECT_EQ(after.run.measures.values, before.run.measures.values);
+  EXPECT_EQ(after.run.measures.monitors, before.run.measures.monitors);
   EXPECT_EQ(after.run.past_divisions.front()->positions, before.run.past_divisions.front()->positions);
   EXPECT_EQ(checkpoint_bytes(after), bytes) << "all that is in it comes back, and gives the same bytes";
   EXPECT_EQ(checkpoint_bytes(before), bytes);
@@ -118,19 +114,15 @@ TEST_F(CheckpointTest, EveryMemberComesBack) {
   EXPECT_GT(written.size(), 35U);
 }
 
-// Rows, contacts and divisions come and go between them: what is in one is not in the next unless it should be.
-TEST_F(CheckpointTest, OneAfterTheOtherHoldTheSameAsEachAlone) {
-  CheckpointBytes bytes_of;
-  std::size_t largest = 0, largest_alone = 0;
+// A state, not a history: the steps before it add a time of a snapshot each, nothing else.
+TEST_F(CheckpointTest, DoesNotGrowWithTheRun) {
   const auto& checkpoints = block_run().checkpoints;
-  for (int round = 0; round < 2; ++round)  // the second begins with fewer rows and cells than the first ended with
-    for (const Checkpoint& checkpoint : checkpoints) {
-      const std::string bytes = bytes_of(checkpoint), alone = checkpoint_bytes(checkpoint);
-      EXPECT_EQ(checkpoint_bytes(read_checkpoint_bytes(bytes)), alone);
-      largest = std::max(largest, bytes.size()), largest_alone = std::max(largest_alone, alone.size());
-    }
-  EXPECT_GT(checkpoints.size(), 5U);
-  EXPECT_LT(largest, 2 * largest_alone) << "room that was given up is used again";
+  const auto divided = std::ranges::find_if(
+      checkpoints, [](const Checkpoint& checkpoint) { return !checkpoint.run.past_divisions.empty(); });
+  const auto first = divided + 2, last = checkpoints.end() - 1;
+  ASSERT_GT(last - first, 3);
+  EXPECT_EQ(checkpoint_bytes(*last).size(),
+            checkpoint_bytes(*first).size() + static_cast<std::size_t>(last - first) * sizeof(double));
 }
 
 TEST_F(CheckpointTest, EveryDamageIsRefused) {
@@ -185,7 +177,7 @@ TEST_F(CheckpointTest, DamageUnderARightChecksumIsRefusedOrHarmless) {
       if (!checkpoint) continue;
       for (const auto& [field, numbers] : fields_of(*checkpoint))
         EXPECT_TRUE(std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); })) << field << at;
-      EXPECT_FALSE(checkpoint->record.rows.empty());
+      EXPECT_TRUE(fits_columns(checkpoint->run.measures));
       (void)why_unfit(checkpoint->run, *block_run().model);
     }
   }
@@ -204,29 +196,34 @@ TEST_F(CheckpointTest, AnotherFormatIsNamed) {
   }
 }
 
-TEST_F(CheckpointTest, RowsOfOtherColumnsAreNamed) {
+TEST_F(CheckpointTest, MeasuresOfOtherColumnsAreNamed) {
   std::string bytes = checkpoint_bytes(block_run().last());
-  const std::size_t at = bytes.find("furrow_depth_um\n");
+  const std::size_t at = bytes.find("furrow_depth_um ");
   ASSERT_NE(at, std::string::npos);
   bytes.replace(at, 15, "furrow_width_um");
   EXPECT_SAYS(error_of<FileError>([&] { return read_checkpoint_bytes(made_right(bytes)); }), "other columns");
 }
 
-// How long each list of internal states is stands beside all of their numbers.
+// Before its items each list has its length.
 TEST_F(CheckpointTest, ListsThatDoNotAddUpAreRefused) {
   const std::string bytes = checkpoint_bytes(marked(block_run().last()));
-  const auto lengths = [](std::array<int, 3> of) {
+  using Internals = std::array<double, 7>;  // three lists: {1, 2}, {}, {3}
+  const auto as_bytes = [](const Internals& of) {
     return std::string(reinterpret_cast<const char*>(of.data()), sizeof(of));
   };
-  const std::size_t at = bytes.find(lengths({2, 0, 1}));
+  const std::size_t at = bytes.find(as_bytes({3, 2, 1, 2, 0, 1, 3}));
   ASSERT_NE(at, std::string::npos);
-  const auto with = [&](std::array<int, 3> of) {
+  const auto with = [&](const Internals& of) {
     std::string changed = bytes;
-    return made_right(changed.replace(at, sizeof(of), lengths(of)));
+    return made_right(changed.replace(at, sizeof(of), as_bytes(of)));
   };
-  EXPECT_FALSE(is_refused(with({1, 1, 1})));
-  for (const std::array<int, 3>& of : {std::array{2, 0, 0}, {2, 0, 2}, {2, -1, 2}, {3, 1, 1}})
-    EXPECT_TRUE(is_refused(with(of))) << of[0] << of[1] << of[2];
+  EXPECT_FALSE(is_refused(with({3, 1, 1, 1, 2, 1, 3})));
+  for (const Internals& of : {Internals{3, 2, 1, 2, 0, 0, 3},
+                              {3, 2, 1, 2, 0, 2, 3},
+                              {3, 2, 1, 2, -1, 1, 3},
+                              {3, 2, 1, 2, 0.5, 1, 3},
+                              {3, 1e9, 1, 2, 0, 1, 3}})
+    EXPECT_TRUE(is_refused(with(of))) << of[1] << of[4] << of[5];
 }
 
 TEST_F(CheckpointTest, WhatIsNoNumberIsRefused) {
@@ -245,10 +242,11 @@ TEST_F(CheckpointTest, WhatIsNoNumberIsRefused) {
   refused([](Checkpoint& c) { c.run.equilibrium_time_s = no_number; });
   refused([](Checkpoint& c) { c.run.wanted_step_s = -std::numeric_limits<double>::infinity(); });
   refused([](Checkpoint& c) { c.record.frame_times_s[1] = no_number; });
-  refused([](Checkpoint& c) { c.record.rows[1].values[column_index("max_volume_error")] = no_number; });
-  refused([](Checkpoint& c) { c.record.rows[1].monitors[0] = no_number; });
-  refused([](Checkpoint& c) { c.record.rows.clear(); });
-  EXPECT_EQ(cases, 10);
+  refused([](Checkpoint& c) { c.run.measures.values[column_index("max_volume_error")] = no_number; });
+  refused([](Checkpoint& c) { c.run.measures.monitors[0] = no_number; });
+  refused([](Checkpoint& c) { c.run.measures.values.pop_back(); });
+  refused([](Checkpoint& c) { c.run.measures.values[column_index("cells")] = 0.5; });
+  EXPECT_EQ(cases, 11);
 }
 
 TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
@@ -307,8 +305,8 @@ TEST_F(CheckpointTest, ScenariosThatMayChange) {
   EXPECT_TRUE(other_stop(before, with("b = 1", "b = 2")));
   EXPECT_TRUE(other_stop(before, with("c = 1", "c = 2")));
   EXPECT_FALSE(other_stop(before, with("end_s = 1", "end_s = 2")));
-  EXPECT_EQ(other_scenario(before, with("a = 1", "a = 2")), "it has [embryo] a = 1, this one has [embryo] a = 2");
-  EXPECT_EQ(other_scenario(before, with("a = 1\n", "")), "it has [embryo] a = 1, this one has nothing");
+  EXPECT_EQ(other_scenario(before, with("a = 1", "a = 2")), "embryo.a was 1 and is now 2");
+  EXPECT_EQ(other_scenario(before, with("a = 1\n", "")), "embryo.a was 1 and is now missing");
   EXPECT_TRUE(other_scenario(before, before + "[stopped]\na = 1\n"));
   EXPECT_TRUE(other_scenario(before, with("format = 1", "format = 2")));
 }

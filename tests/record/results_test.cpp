@@ -9,15 +9,16 @@
 #include <new>
 
 #include "core/files.hpp"
+#include "core/markup.hpp"
+#include "core/numbers.hpp"
 #include "measure/furrow.hpp"
 #include "record/checkpoint.hpp"
 #include "record/csv.hpp"
-#include "record/deflate.hpp"
-#include "record/outcome.hpp"
 #include "record/polygon_surface.hpp"
-#include "record/run_scenario.hpp"
+#include "record/summary.hpp"
 #include "simulation/division_rules.hpp"
 #include "simulation/run_warnings.hpp"
+#include "support/block_scenario.hpp"
 #include "support/own_folder.hpp"
 #include "support/prisms.hpp"
 #include "support/scenarios.hpp"
@@ -98,6 +99,53 @@ TEST(Csv, WhatIsNotFiniteIsLeftEmptyAndZeroHasNoSign) {
   EXPECT_EQ(csv_rows(values, 6), ",1.5,,0,2,");
   EXPECT_EQ(csv_rows(values, 3), ",1.5,\n0,2,");
   EXPECT_EQ(csv_rows({}, 3), "");
+}
+
+// Bits that a resumed run reads back, from values of any bits.
+TEST(Csv, ARowIsReadBackAsItWas) {
+  std::mt19937_64 random(8);
+  for (int i = 0; i < 20000; ++i) {
+    const double value = std::bit_cast<double>(random());
+    const std::optional<double> read = number_in(csv_row(std::array{std::optional(value)}));
+    if (std::isfinite(value))
+      ASSERT_EQ(read, value);
+    else
+      ASSERT_FALSE(read);
+  }
+  EXPECT_EQ(csv_row(std::array{std::optional(-0.0), std::optional<double>(), std::optional(0.1)}), "0,,0.1");
+}
+
+class SeriesRows : public support::OwnFolder {
+ protected:
+  SeriesRows() {
+    while (simulation.steps() < 3 && simulation.step()) rows.push_back(simulation.measures());
+    header = fmt::format("{}\n", fmt::join(series_header(simulation.observer()), ","));
+    for (const Observation& row : rows) text += series_row(row, simulation.observer().columns()) + '\n';
+  }
+  std::vector<Observation> read(const std::string& content) {
+    return read_series_rows(write("series.csv", content), simulation.observer());
+  }
+  Simulation simulation{load_scenario(support::pulled_block())};
+  std::vector<Observation> rows = {simulation.measures()};
+  std::string header, text;
+};
+
+TEST_F(SeriesRows, AreReadBackAsTheyWere) {
+  const std::vector<Observation> found = read(header + text);
+  ASSERT_EQ(found.size(), 4U);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    EXPECT_EQ(found[r].values, rows[r].values);
+    EXPECT_EQ(found[r].monitors, rows[r].monitors);
+  }
+}
+
+TEST_F(SeriesRows, ThatDoNotFitAreRefused) {
+  EXPECT_THROW(read("time_s,a\n0,1\n"), FileError);
+  EXPECT_THROW(read(header + text + "1\n"), FileError) << "a short row";
+  EXPECT_THROW(read(header + text + text), FileError) << "times that go back";
+  Observation half = rows.back();
+  half.values[column_index("cells")] = 5.5;
+  EXPECT_THROW(read(header + series_row(half, simulation.observer().columns())), FileError);
 }
 
 std::string inflated(std::string_view bytes, std::size_t size) {

@@ -73,7 +73,7 @@ TEST(GivenActivity, GoesAlongIntoCopiesAndCheckpoints) {
   first.set_activity("cortex.apical", all(first, 0.4));
   first.step();
   Simulation copy = first, resumed(scenario);
-  resumed.go_on_from(first.memory(), first.measures());
+  resumed.go_on_from(first.memory());
   for (Simulation* simulation : {&first, &copy, &resumed}) simulation->run_until(80);
   EXPECT_EQ(farthest(first, copy), 0);
   EXPECT_EQ(farthest(first, resumed), 0);
@@ -152,7 +152,7 @@ TEST(CellArray, IsCopiedAndRemembered) {
   simulation.set_cell_array("signal", {1, 2, 3});
   simulation.run_until(1);
   Simulation copy(simulation), resumed(row_of_cells());
-  resumed.go_on_from(simulation.memory(), simulation.measures());
+  resumed.go_on_from(simulation.memory());
   for (const Simulation* one : {&copy, &resumed}) EXPECT_EQ(one->outside_arrays().at("signal"), (CellArray{1, 2, 3}));
   copy.set_cell_array("signal", {0, 0, 0});
   EXPECT_EQ(simulation.outside_arrays().at("signal"), (CellArray{1, 2, 3}));
@@ -179,7 +179,7 @@ TEST(CellArray, ThatFitsNoCellIsRefused) {
   EXPECT_TRUE(simulation.outside_arrays().empty());
   RunMemory memory = simulation.memory();
   memory.outside_arrays["signal"] = {1};
-  EXPECT_THROW(simulation.go_on_from(memory, simulation.measures()), UnfitMemory);
+  EXPECT_THROW(simulation.go_on_from(memory), UnfitMemory);
 }
 
 const std::string pulsing = R"(format = 1
@@ -253,10 +253,9 @@ TEST(Pulses, ResumedRunsGoOnToTheSameBits) {
   Simulation whole(scenario_of({}));
   whole.run_until(20);
   const RunMemory memory = whole.memory();
-  const Observation measures = whole.measures();
   whole.run();
   Simulation rest(scenario_of({}));
-  rest.go_on_from(memory, measures);
+  rest.go_on_from(memory);
   rest.run();
   expect_same(rest.state(), whole.state());
 }

@@ -215,14 +215,13 @@ TEST(FullModel, ACrossingOfThePlaneIsSeen) {
 TEST(FullModel, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
   const Scenario scenario = second_order(furrow, {planes[1], "enclosed.yolk.volume=compliant", compliant});
   std::optional<RunMemory> kept;
-  Observation measures;
   std::optional<Simulation> fork;
   const auto run = [&](int threads) {
     const ThreadCount so_many(threads);
     Simulation simulation(scenario);
     while (simulation.step())
       if (simulation.steps() == 9) {
-        kept = simulation.memory(), measures = simulation.measures();
+        kept = simulation.memory();
         fork.emplace(simulation);
       }
     return simulation;
@@ -234,7 +233,7 @@ TEST(FullModel, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
   ASSERT_TRUE(kept);
 
   Simulation resumed(scenario);
-  go_on_by_bytes(resumed, *kept, measures);
+  go_on_by_bytes(resumed, *kept);
   for (Simulation* rest : {&resumed, &*fork}) {
     EXPECT_EQ(rest->run(), whole.status());
     EXPECT_EQ(rest->steps(), whole.steps());
@@ -244,7 +243,7 @@ TEST(FullModel, GoesOnToTheSameBitsOnAnyNumberOfThreads) {
 
   RunMemory of_another = *kept;
   of_another.whole_internals.clear();
-  EXPECT_THROW(Simulation(scenario).go_on_from(of_another, measures), UnfitMemory);
+  EXPECT_THROW(Simulation(scenario).go_on_from(of_another), UnfitMemory);
 }
 
 constexpr double length = 40, width = 60;
@@ -314,7 +313,7 @@ at_equilibrium = false
   Simulation whole(scenario);
   for (int step = 0; step < 5; ++step) ASSERT_TRUE(whole.step()) << whole.failure();
   Simulation resumed(scenario), fork = whole;
-  go_on_by_bytes(resumed, whole.memory(), whole.measures());
+  go_on_by_bytes(resumed, whole.memory());
   ASSERT_EQ(whole.run(), RunStatus::end_time) << whole.failure();
   ASSERT_EQ(resumed.run(), RunStatus::end_time) << resumed.failure();
   const ThreadCount two(2);

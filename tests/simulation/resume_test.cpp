@@ -10,7 +10,6 @@ namespace {
 // What a run leaves behind: everything that happened after each step.
 struct Trace {
   std::vector<RunMemory> memories;  // after each step
-  std::vector<Observation> measures;
   RunStatus status;
   std::string failure;
   RunMemory end;
@@ -19,9 +18,8 @@ struct Trace {
 // Memories make the run forget its factor, but for those of resumable steps.
 struct Tracer final : SimulationListener {
   Tracer(const Simulation& of, Trace& into) : simulation(of), trace(into) {}
-  void step_accepted(const AcceptedStep& /*step*/, const Observation& measures) override {
+  void step_accepted(const AcceptedStep& /*step*/, const Observation& /*measures*/) override {
     trace.memories.push_back(simulation.memory());
-    trace.measures.push_back(measures);
   }
   const Simulation& simulation;
   Trace& trace;
@@ -30,7 +28,7 @@ struct Tracer final : SimulationListener {
 Trace trace(const std::string& name, const std::vector<std::string>& overrides, const Trace* before = nullptr,
             std::size_t step = 0) {
   Simulation simulation(load_scenario(find_scenario(name), overrides));
-  if (before != nullptr) simulation.go_on_from(before->memories[step], before->measures[step]);
+  if (before != nullptr) simulation.go_on_from(before->memories[step]);
   Trace trace;
   Tracer tracer(simulation, trace);
   simulation.listen(tracer);
@@ -129,8 +127,8 @@ TEST(Resume, WithEdgesThatPress) {
   Simulation whole = fresh();
   while (!press(whole)) ASSERT_TRUE(whole.step()) << whole.failure();
   Simulation fork = whole, resumed = fresh(), from_bytes = fresh();
-  resumed.go_on_from(whole.memory(), whole.measures());
-  go_on_by_bytes(from_bytes, whole.memory(), whole.measures());
+  resumed.go_on_from(whole.memory());
+  go_on_by_bytes(from_bytes, whole.memory());
   int steps = 0, pressed = 0;
   while (whole.step()) {
     ++steps, pressed += press(whole);
@@ -159,7 +157,7 @@ TEST(Resume, FromResumableStepsOfARunLeftAlone) {
       resumable.push_back(whole.steps());
       if (resumed || whole.steps() < 5) continue;
       resumed.emplace(scenario);
-      resumed->go_on_from(whole.memory(), whole.measures());
+      resumed->go_on_from(whole.memory());
     }
     alone.run();
     ASSERT_TRUE(resumed);

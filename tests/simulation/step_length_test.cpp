@@ -1,4 +1,4 @@
-#include "simulation/step_length.hpp"
+#include "simulation/controls.hpp"
 
 #include "support/testing.hpp"
 

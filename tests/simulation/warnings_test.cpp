@@ -3,7 +3,6 @@
 #include <regex>
 
 #include "scenario/remedies.hpp"
-#include "simulation/pace.hpp"
 #include "simulation/run_warnings.hpp"
 #include "simulation/simulation.hpp"
 #include "support/scenarios.hpp"
@@ -184,7 +183,7 @@ TEST(Pace, ARunThatCrushesItsCellsEnds) {
 
   Simulation resumed = crushed();
   ASSERT_TRUE(halfway.has_value());
-  resumed.go_on_from(*halfway, run.measures());
+  resumed.go_on_from(*halfway);
   resumed.run();
   EXPECT_EQ(resumed.failure(), run.failure());
   EXPECT_EQ(resumed.state().positions, run.state().positions);

@@ -51,11 +51,14 @@ struct Fields {
   }
 
   void take_run(const RunMemory& run) {
-    const auto& [state, steps, divisions, equilibrium_time_s, at_equilibrium, criterion_met, wanted_step_s, pace,
+    const auto& [state, measures, steps, divisions, equilibrium_time_s, at_equilibrium, wanted_step_s, pace,
                  computing_s, energies, past_divisions, whole_internals, outside_arrays] = run;
     take_state(state);
+    const auto& [measured, monitors, criteria_met, is_over] = measures;
+    take("measures", measured), take("monitors", monitors), take("criteria_met", criteria_met),
+        take("is_over", is_over);
     take("steps", steps), take("divisions", divisions), take("equilibrium_time_s", equilibrium_time_s);
-    take("at_equilibrium", at_equilibrium), take("criterion_met", criterion_met);
+    take("at_equilibrium", at_equilibrium);
     take("wanted_step_s", wanted_step_s), take("computing_s", computing_s);
     const auto& [since_s, pace_steps, iterations] = pace;
     take("pace.since_s", since_s), take("pace.steps", pace_steps), take("pace.iterations", iterations);
@@ -73,17 +76,10 @@ struct Fields {
   }
 
   void take_record(const RecordMemory& record) {
-    const auto& [rows, series_bytes, lineage_bytes, midline_bytes, section_bytes, cells_bytes, frame_times_s, wall_s,
-                 solver_s] = record;
-    numbers["rows"], numbers["monitors"], numbers["criteria_met"];
-    for (const Observation& row : rows) {
-      const auto& [values, monitors, criteria_met, is_over] = row;  // is_over is the run's criterion_met
-      take("rows", values), take("monitors", monitors);
-    }
-    if (!rows.empty()) take("criteria_met", rows.back().criteria_met);  // of others nobody asks
-    take("series_bytes", static_cast<double>(series_bytes)), take("lineage_bytes", static_cast<double>(lineage_bytes));
-    take("midline_bytes", static_cast<double>(midline_bytes)), take("cells_bytes", static_cast<double>(cells_bytes));
-    take("section_bytes", static_cast<double>(section_bytes));
+    const auto& [table_bytes, frame_times_s, wall_s, solver_s] = record;
+    numbers["table_bytes"];
+    for (const auto& [name, bytes] : table_bytes)
+      take("table_bytes", name), take("table_bytes", static_cast<double>(bytes));
     take("frame_times_s", frame_times_s), take("wall_s", wall_s), take("solver_s", solver_s);
   }
 };
@@ -102,7 +98,8 @@ std::map<std::string, std::vector<double>> fields_of(const Checkpoint& checkpoin
 Checkpoint marked(Checkpoint checkpoint) {
   RunMemory& run = checkpoint.run;
   run.equilibrium_time_s = 1.5;
-  run.at_equilibrium = run.criterion_met = true;
+  run.at_equilibrium = run.measures.is_over = true;
+  run.measures.criteria_met = {"folded", "at rest"};
   run.computing_s = 0.25;
   run.energies = {{1, 2, 3}, {4, 5, 6}};
   run.state.contact_forces = {0.5, 0, 2};
@@ -116,9 +113,7 @@ Checkpoint marked(Checkpoint checkpoint) {
   run.state.trend.mean_velocities = run.state.trend.accelerations = {Vec3(1, 2, 3), Vec3(-4, 5, 6)};
   run.state.trend.multiplier_rates = {7, 8};
   RecordMemory& record = checkpoint.record;
-  record.rows.back().criteria_met = {"folded", "at rest"};
-  record.series_bytes = 101, record.lineage_bytes = 102, record.midline_bytes = 103, record.cells_bytes = 104;
-  record.section_bytes = 105;
+  record.table_bytes = {{"series.csv", 101}, {"midline.csv", 102}};
   record.wall_s = 17, record.solver_s = 16;
   return checkpoint;
 }

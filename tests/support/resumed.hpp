@@ -25,11 +25,10 @@ inline void expect_same(const State& a, const State& b) {
 }
 
 /// A fresh simulation goes on from a moment: by the bytes of a checkpoint, where this plica has them.
-inline void go_on_by_bytes(Simulation& fresh, const RunMemory& memory, const Observation& measures) {
+inline void go_on_by_bytes(Simulation& fresh, const RunMemory& memory) {
   Checkpoint checkpoint{"", "", "", memory, {}};
-  checkpoint.record.rows.push_back(measures);
   if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
-  fresh.go_on_from(std::move(checkpoint.run), checkpoint.record.rows.back());
+  fresh.go_on_from(std::move(checkpoint.run));
 }
 
 }  // namespace plica::support

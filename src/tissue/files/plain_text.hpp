@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "core/byte_order_mark.hpp"
+#include "core/numbers.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
