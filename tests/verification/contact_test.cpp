@@ -3,7 +3,8 @@
 // Flat on flat: a block that is pressed on another has the same pressure all over its face, wherever it stands on the
 // mesh of the other. Without Poisson's effect the stress is uniform: compression over height times Young's modulus.
 // Contact's distances and the crossing test against another program's, the IPC Toolkit's: what
-// contact_truth/make_truth.py wrote, some hundred cases of either, or 10 000 in a folder that PLICA_CONTACT_TRUTH names.
+// contact_truth/make_truth.py wrote, some hundred cases of either, or 10 000 in a folder that PLICA_CONTACT_TRUTH
+// names.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -147,8 +148,8 @@ TEST(Hertz, ForceAndRadiusByApproach) {
   RecordProperty("cases", cases);
 }
 
-constexpr double modulus = 1, height = 20, side = 40;                // kPa, um: of the block that is pressed
-constexpr double flat_begin = 0.4, flat_stiffness = 5, press = 0.8;  // um, kPa/um, um
+constexpr double block_modulus = 1, height = 20, side = 40;             // kPa, um: of the block that is pressed
+constexpr double flat_begin = 0.4, flat_stiffness = 5, press_um = 0.8;  // um, kPa/um, um
 
 struct Block {
   int cells;      // across
@@ -180,7 +181,7 @@ Pressure pressure(const Block& below, const Block& above, bool rigid_below) {
   Model model(bodies.tissue());
   const Tissue& tissue = model.tissue;
   model.volumes.hold(false);
-  const ElasticModuli moduli = ElasticModuli::from_young(modulus, 0);
+  const ElasticModuli moduli = ElasticModuli::from_young(block_modulus, 0);
   model.laws.push_back(std::make_unique<Corotational>(tissue, moduli, 0));
   model.laws.push_back(std::make_unique<Dilatation>(tissue, moduli.bulk_modulus()));
   model.laws.push_back(std::make_unique<SurfaceDrag>(tissue, 1e-5));
@@ -196,13 +197,13 @@ Pressure pressure(const Block& below, const Block& above, bool rigid_below) {
   for (int step = 0; step < 4; ++step) {
     if (step == 0)
       for (std::size_t n = upper; n < tissue.node_count(); ++n)
-        state.positions[n].z() -= above.at.z() - flat_begin + press;
+        state.positions[n].z() -= above.at.z() - flat_begin + press_um;
     const StepReport report = stepper.advance(state, 10, true, next);
     EXPECT_TRUE(report.converged()) << report.reason();
     std::swap(state, next);
   }
   // Springs in a row: the two blocks and what lies between them, pressed from either side.
-  const double exact = press / (height / modulus * (rigid_below ? 1 : 2) + 1 / (2 * flat_stiffness));
+  const double exact = press_um / (height / block_modulus * (rigid_below ? 1 : 2) + 1 / (2 * flat_stiffness));
   const auto n = static_cast<std::size_t>(above.cells), layer = (n + 1) * (n + 1);
   std::vector<double> found;
   for (std::size_t j = 0; j < n; ++j)
@@ -213,7 +214,7 @@ Pressure pressure(const Block& below, const Block& above, bool rigid_below) {
         const std::size_t inner = upper + layer + corner, outer = inner + layer;
         strain += 0.25 * (1 - (state.positions[inner].z() - state.positions[outer].z()) / (height / 2));
       }
-      found.push_back(modulus * strain / exact);
+      found.push_back(block_modulus * strain / exact);
     }
   Pressure result{0, 0};
   for (const double p : found) result.mean += p / static_cast<double>(found.size());

@@ -356,8 +356,8 @@ TEST(SwitchedOff, EveryNodeReturnsToRest) {
   }
 }
 
-constexpr double shear_modulus = 0.3, relaxation_s = 100;
-constexpr double length = 60, width = 20, height = 30;
+constexpr double shear_modulus = 0.3, decay_s = 100;
+constexpr double strip_length = 60, width = 20, height = 30;
 
 // Pull over the section at rest, in units of mu, of a stretch l that is held from time 0, at time t in units of tau:
 // l/c - sqrt(c)/l^2, where c = C_p along the strip and dc/dt = l^2 - (l^2 + 2 c^(3/2)/l)/3.
@@ -378,13 +378,14 @@ struct Pulls {
 };
 
 Pulls pulls_of_strip(double stretch, int steps) {
-  Model model(build_block({.length_um = length, .width_um = width, .cell_height_um = height, .cells = {3, 1, 1}}));
-  const std::vector<double> moduli(3, shear_modulus), relaxation(3, relaxation_s);
+  Model model(
+      build_block({.length_um = strip_length, .width_um = width, .cell_height_um = height, .cells = {3, 1, 1}}));
+  const std::vector<double> moduli(3, shear_modulus), relaxation(3, decay_s);
   model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, moduli, relaxation));
   State state = rest_state(model);
   for (std::size_t n = 0; n < model.tissue.node_count(); ++n) {
     const Vec3& X = model.tissue.rest_positions[n];
-    model.held[n] = {std::abs(X.x()) == length / 2, X.y() == -width / 2, X.z() == -height / 2};
+    model.held[n] = {std::abs(X.x()) == strip_length / 2, X.y() == -width / 2, X.z() == -height / 2};
     state.positions[n].x() *= stretch;
     for (const int axis : {1, 2}) {  // to the sides that are held
       const double side = axis == 1 ? -width / 2 : -height / 2;
@@ -409,13 +410,13 @@ Pulls pulls_of_strip(double stretch, int steps) {
     model.volumes.add_forces(next.positions, next.multipliers, forces);
     double pull = 0;
     for (std::size_t n = 0; n < forces.size(); ++n)
-      if (model.tissue.rest_positions[n].x() == length / 2) pull -= forces[n].x();
+      if (model.tissue.rest_positions[n].x() == strip_length / 2) pull -= forces[n].x();
     state = std::move(next);
     return pull / (width * height * shear_modulus);
   };
   Pulls pulls{step(1e-7), 0};
   state.trend = {};  // what came before says nothing of a step of another length
-  for (int k = 0; k < steps; ++k) pulls.after_tau = step(relaxation_s / steps);
+  for (int k = 0; k < steps; ++k) pulls.after_tau = step(decay_s / steps);
   return pulls;
 }
 

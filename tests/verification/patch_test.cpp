@@ -220,7 +220,7 @@ TEST_P(PolygonSheets, BendAsAPlateDoes) {
   }
 }
 
-constexpr double inner = 100, outer = 140, young = 1, pressure = 0.01;  // um, kPa: 10 Pa
+constexpr double inner = 100, outer = 140, pressure = 0.01;  // um, kPa: 10 Pa
 
 /// Lame's radial displacement at radius r.
 double lame(double r, double poisson) {
