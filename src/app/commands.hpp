@@ -17,17 +17,9 @@ enum ExitStatus : int {
   exit_terminated = 143,
 };
 
-void add_run_command(CLI::App& app, int& status);
-void add_compare_command(CLI::App& app, int& status);
-void add_calibrate_command(CLI::App& app, int& status);
-void add_study_command(CLI::App& app, int& status);
-void add_reproduce_command(CLI::App& app, int& status);
-void add_report_command(CLI::App& app, int& status);
-void add_render_command(CLI::App& app, int& status);
-void add_export_command(CLI::App& app, int& status);
-void add_check_command(CLI::App& app, int& status);
-void add_mesh_command(CLI::App& app, int& status);
-void add_scenarios_command(CLI::App& app, int& status);
-void add_reference_command(CLI::App& app, int& status);
+using AddCommand = void(CLI::App& app, int& status);
+AddCommand add_run_command, add_compare_command, add_calibrate_command, add_study_command, add_reproduce_command,
+    add_report_command, add_render_command, add_export_command, add_check_command, add_mesh_command,
+    add_scenarios_command, add_reference_command;
 
 }  // namespace plica

@@ -1,13 +1,8 @@
 #include "show/looks.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "core/errors.hpp"
-#include "core/names.hpp"
 #include "measure/cell_columns.hpp"
 #include "show/boundary_surface.hpp"
 #include "tissue/facing.hpp"
@@ -64,14 +59,6 @@ double rounded_up(double value) {
   for (const double factor : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 10.0})
     if (factor * power * (1 + slack) >= value) return factor * power;
   return 10 * power;
-}
-
-template <class Arrays>
-const auto& required(const Arrays& arrays, const std::string& name) {
-  const auto found = arrays.find(name);
-  if (found == arrays.end())
-    throw FileError(fmt::format("the snapshot has no array {}; give one written by plica", name));
-  return found->second;
 }
 
 double size_of(const std::vector<double>& members) {
@@ -159,8 +146,8 @@ std::vector<double> field_values(const Frame& frame, const ColourField& field) {
   // Snapshots of older versions lack this array; the values are unknown.
   if ((field.array == "self_intersecting" || field.array == "strength") && !frame.element_scalars.contains(field.array))
     return std::vector<double>(frame.elements.size(), 0.0);
-  if (!field.on_nodes) return required(frame.element_scalars, field.array);
-  const Vectors& vectors = required(frame.node_vectors, field.array);
+  if (!field.on_nodes) return values_in(frame.element_scalars, field.array);
+  const Vectors& vectors = values_in(frame.node_vectors, field.array);
   std::vector<double> lengths;
   lengths.reserve(vectors.size());
   for (const Vec3& vector : vectors) lengths.push_back(vector.norm());

@@ -19,14 +19,12 @@ struct Panel {
   std::size_t column = 0, row = 0;
 };
 
-enum class Align { left, centre, right };
-
-/// Line of text; (`x`, `y`): middle of its height, and of its width depending on `align`.
+/// Line of text; (`x`, `y`): middle of its height, and its left end or the middle of its width.
 struct Label {
   std::string text;
   double x = 0, y = 0;
   double size_px = 12;
-  Align align = Align::centre;
+  bool is_centred = true;
   bool bold = false;
   bool upwards = false;  // rotated by 90 degrees
 };

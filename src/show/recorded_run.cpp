@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "core/version.hpp"
 #include "record/archive.hpp"
 #include "record/results.hpp"
@@ -40,11 +41,23 @@ void refuse_to_replace_reference(const std::vector<Monitor>& monitors, const fs:
           fmt::format("--out {} is the reference of monitor \"{}\"; give another --out", out.string(), monitor.name));
 }
 
+// Writer of report.html at the end of a run.
+class ReportWriter final : public RecordListener {
+ public:
+  explicit ReportWriter(fs::path directory) : directory_(std::move(directory)) {}
+  void add_frame(const Frame& frame, double time_s) override { frames_.add(frame, time_s); }
+  void end() override { write_file(directory_ / "report.html", report_page({make_report_run(directory_, frames_)})); }
+
+ private:
+  fs::path directory_;
+  ReportFrames frames_{most_frame_bytes};
+};
+
 }  // namespace
 
 RecordedRun::RecordedRun(fs::path out, const Scenario& scenario, const ScenarioSource& source, Simulation& simulation,
                          Start start, Recorder::Clock::time_point since)
-    : out_(std::move(out)), input_toml_(source.text), simulation_(simulation), report_(out_) {
+    : out_(std::move(out)), input_toml_(source.text), simulation_(simulation) {
   refuse_to_replace_scenario(source.file, out_);
   refuse_to_replace_study(out_);
   refuse_to_replace_reference(simulation.observer().monitors(), out_);
@@ -62,7 +75,9 @@ RecordedRun::RecordedRun(fs::path out, const Scenario& scenario, const ScenarioS
     lock_ = std::make_unique<DirectoryLock>(out_);  // it may have been created just now
   }
   recorder_ = std::make_unique<Recorder>(out_, scenario, simulation, since);
-  if (can_report()) recorder_->listen(report_);
+  if (!can_report()) return;
+  report_ = std::make_unique<ReportWriter>(out_);
+  recorder_->listen(*report_);
 }
 
 RecordedRun::~RecordedRun() {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/directory_lock.hpp"
+#include "record/record_listener.hpp"
 #include "record/recorder.hpp"
 #include "scenario/load.hpp"
-#include "show/report_writer.hpp"
 
 namespace plica {
 
@@ -64,7 +64,7 @@ class RecordedRun {
   std::vector<std::string> notes_;
   std::unique_ptr<DirectoryLock> lock_;
   std::optional<Checkpoint> checkpoint_;
-  ReportWriter report_;
+  std::unique_ptr<RecordListener> report_;
   std::unique_ptr<Recorder> recorder_;
 };
 

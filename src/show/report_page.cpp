@@ -39,6 +39,19 @@ std::string replaced(std::string_view text, std::string_view place, const std::s
 
 }  // namespace
 
+#ifdef PLICA_REPORT_TEMPLATE
+// Included by the assembler, since the compiler takes seconds for literals of this size.
+#define PLICA_TEMPLATE(name, file)                                                                                     \
+  __asm__(".pushsection .rodata\nplica_" #name ":\n.incbin \"" file "\"\nplica_" #name "_end:\n.byte 0\n.popsection\n"); \
+  extern "C" const char plica_##name[], plica_##name##_end[];                                                          \
+  std::string_view name() { return {plica_##name, plica_##name##_end}; }
+#else
+#define PLICA_TEMPLATE(name, file) \
+  std::string_view name() { return {}; }
+#endif
+PLICA_TEMPLATE(report_template, PLICA_REPORT_TEMPLATE)
+PLICA_TEMPLATE(study_template, PLICA_STUDY_TEMPLATE)
+
 std::string filled_page(std::string_view page, const std::string& title, const ordered_json& data,
                         const std::vector<PageBytes>& packed) {
   if (page.empty()) throw FileError("reports are not available (built with PLICA_WITH_VIEWER=OFF)");

@@ -9,7 +9,6 @@
 #include "core/errors.hpp"
 #include "record/run_scenario.hpp"
 #include "scenario/words.hpp"
-#include "show/named.hpp"
 
 namespace plica {
 namespace {
@@ -39,7 +38,44 @@ bool passes_through_itself(const Frame& frame) {
          std::ranges::any_of(flags->second, [](double flag) { return flag > 0; });
 }
 
+std::vector<View> named_views_of(const Frame& rest, const EmbryoAxes& axes) {
+  std::vector<View> views = views_of(rest);
+  name_views(views, axes);
+  return views;
+}
+
 }  // namespace
+
+std::optional<double> nearest_time_s(const std::vector<double>& times_s, double time_s) {
+  const double last_gap = times_s.size() > 1 ? times_s.back() - times_s[times_s.size() - 2] : 0;
+  constexpr double slack_s = 1e-6;
+  if (time_s < times_s.front() - slack_s || time_s > times_s.back() + last_gap / 2 + slack_s) return {};
+  return *std::ranges::min_element(times_s, {}, [&](double time) { return std::abs(time - time_s); });
+}
+
+Picture rest_picture(Frame frame, const std::string& colour, const std::vector<std::string>& views,
+                     const EmbryoAxes& axes) {
+  std::vector<ColourField> fields;
+  for (const auto& [name, values] : frame.element_scalars) {
+    const auto known = std::ranges::find(colour_fields(), name, &ColourField::name);
+    if (name != "cell_id") fields.push_back(known != colour_fields().end() ? *known : ColourField{name, name, "", name});
+  }
+  fields.insert(fields.begin(), *std::ranges::find(colour_fields(), "region", &ColourField::name));
+  Picture picture;
+  picture.field = named("--color", colour, fields);
+  const std::vector<double> values = field_values(frame, picture.field);
+  const auto [smallest, largest] = std::ranges::minmax(values);
+  if (picture.field.kind == ScaleKind::steps) picture.step_names = step_names(frame, picture.field, largest);
+  picture.range = colour_range(picture.field, smallest, largest);
+  const std::vector<View> known = named_views_of(frame, axes);
+  for (const std::string& name : views.empty() ? std::vector{known.front().name} : views) {
+    const View& view = named("--view", name, known);
+    picture.rows.push_back({view, half_size_um(frame.positions, view)});
+  }
+  picture.letters = picture_letters(axes);
+  picture.columns.push_back({"", std::move(frame)});
+  return picture;
+}
 
 RunPictures::RunPictures(std::filesystem::path directory, PictureOptions options)
     : run_(std::move(directory)), options_(std::move(options)), times_s_(run_.times_s()) {
@@ -90,10 +126,9 @@ void RunPictures::look_through() {
 }
 
 void RunPictures::add_rows(const Frame& rest) {
-  std::vector<View> views = views_of(rest);
-  name_views(views, axes_);
+  const std::vector<View> views = named_views_of(rest, axes_);
   if (options_.usual_view) rows_.push_back({views.front(), {0, 0}});
-  for (const View& view : options_.views) rows_.push_back({*std::ranges::find(views, view.name, &View::name), {0, 0}});
+  for (const std::string& name : options_.views) rows_.push_back({named("--view", name, views), {0, 0}});
   add_cuts(rest.positions);
 }
 
@@ -114,19 +149,12 @@ void RunPictures::add_cuts(const Vectors& rest) {
   }
 }
 
-std::optional<double> RunPictures::nearest_time_s(double time_s) const {
-  const double last_gap = times_s_.size() > 1 ? times_s_.back() - times_s_[times_s_.size() - 2] : 0;
-  constexpr double slack_s = 1e-6;
-  if (time_s < times_s_.front() - slack_s || time_s > times_s_.back() + last_gap / 2 + slack_s) return {};
-  return *std::ranges::min_element(times_s_, {}, [&](double time) { return std::abs(time - time_s); });
-}
-
 std::vector<double> RunPictures::telling_times_s(int count) const {
   const double farthest = *std::ranges::max_element(farthest_um_);
   std::vector<double> times;
   for (int k = 0; k < count; ++k) {
     const double part = static_cast<double>(k) / std::max(1, count - 1);
-    double time_s = nearest_time_s(times_s_.front() + part * (times_s_.back() - times_s_.front())).value();
+    double time_s = nearest_time_s(times_s_, times_s_.front() + part * (times_s_.back() - times_s_.front())).value();
     if (farthest > 0 && k > 0 && k + 1 < count) {
       const auto first = std::ranges::find_if(farthest_um_, [&](double um) { return um >= part * farthest; });
       time_s = times_s_[static_cast<std::size_t>(first - farthest_um_.begin())];

@@ -1,4 +1,4 @@
-// Pictures of the snapshots of a run: times, scale, colours.
+// Pictures of the snapshots of a run (times, scale, colours), and of an undeformed mesh.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace plica {
 
 struct PictureOptions {
   bool usual_view = false;              // first a row of the default view (views_of)
-  std::vector<View> views;              // then one row per view
+  std::vector<std::string> views;       // then one row per view, by name
   std::vector<double> cuts_at_x_um;     // then cross-sections at these x of the run
   bool sections = false;                // then those at 25, 50 and 75 % of the reference length
   std::string colour = "displacement";  // quantity, one of fields_of()
@@ -22,17 +22,22 @@ struct PictureOptions {
   int width_px = 0, height_px = 0;      // as in Picture
 };
 
+/// Time nearest to another; empty before the first, or beyond the last by more than half of the last interval.
+std::optional<double> nearest_time_s(const std::vector<double>& times_s, double time_s);
+
+/// Picture of an undeformed mesh, coloured by one of its arrays or `region`, with one row per view (none: the default
+/// view). Throws UsageError for an unknown name.
+Picture rest_picture(Frame frame, const std::string& colour, const std::vector<std::string>& views,
+                     const EmbryoAxes& axes);
+
 /// Pictures of one run, with a common colour scale and panel size from all its snapshots.
 class RunPictures {
  public:
   /// Throws FileError without snapshots, for a missing array, or a requested shell that the run does not have;
-  /// UsageError for an unknown quantity.
+  /// UsageError for an unknown quantity or view.
   RunPictures(std::filesystem::path directory, PictureOptions options);
 
   [[nodiscard]] const std::vector<double>& times_s() const { return times_s_; }  // of the snapshots
-
-  /// Time of the nearest snapshot; empty before the first, or beyond the last by more than half of the last interval.
-  [[nodiscard]] std::optional<double> nearest_time_s(double time_s) const;
 
   /// Representative times: when a node first reaches 0, 1/(count - 1), ..., 1 of the largest displacement of the run.
   /// Without displacements, equal intervals.

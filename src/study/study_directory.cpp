@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <chrono>
-#include <nlohmann/json.hpp>
 
 #include "core/errors.hpp"
 #include "core/numbers.hpp"
@@ -33,14 +32,6 @@ std::string resolved_scenario(const StudyInput& input) {
 }
 
 std::string this_plica() { return fmt::format("{} ({}, {})", version(), commit(), compiler()); }
-
-Json read_json(const fs::path& file) {
-  try {
-    return Json::parse(read_file(file));
-  } catch (const Json::exception&) {
-    throw FileError(file.string() + ": is damaged; restart the study with --overwrite");
-  }
-}
 
 void require_same_plica(const fs::path& directory, const Json& begun) {
   const std::string with = begun.value("plica", "");
@@ -108,8 +99,7 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   const StudyInput& input = study.input();
   const bool holds_one = fs::exists(directory / "study.json", error);
   if (holds_one && start == Start::resumed) {
-    const Json begun = read_json(directory / "study.json");
-    require_same_plica(directory, begun);
+    require_same_plica(directory, result.begun());
     require_same_study(directory, input);
     require_same_scenario(directory, input);
     if (read_file(directory / "points.csv") != points_csv(study.design()))
@@ -153,7 +143,7 @@ StudyDirectory StudyDirectory::look(const fs::path& directory) {
 
 std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory) {
   StudyDirectory result = look(directory);
-  const Json begun = read_json(directory / "study.json");
+  const Json begun = result.begun();
   StudyInput input =
       parse_study(begun.value("name", "study"), begun.value("file", "study.toml"), read_file(directory / "study.toml"));
   return {std::move(result), Study(std::move(input), points_of_csv(read_file(directory / "points.csv")),
@@ -162,13 +152,22 @@ std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory)
 
 std::pair<StudyDirectory, Study> StudyDirectory::open_to_run(const fs::path& directory) {
   auto opened = open(directory);
-  require_same_plica(directory, read_json(directory / "study.json"));
+  require_same_plica(directory, opened.first.begun());
   require_same_scenario(directory, opened.second.input());
   return opened;
 }
 
+Json StudyDirectory::begun() const {
+  const fs::path file = directory_ / "study.json";
+  try {
+    return Json::parse(read_file(file));
+  } catch (const Json::exception&) {
+    throw FileError(file.string() + ": is damaged; restart the study with --overwrite");
+  }
+}
+
 StudyRows StudyDirectory::rows() const {
-  const std::size_t runs = read_json(directory_ / "study.json").value("runs", std::size_t{0});
+  const std::size_t runs = begun().value("runs", std::size_t{0});
   std::vector<fs::path> files;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(directory_ / "rows", error)) files.push_back(entry.path());
@@ -195,7 +194,7 @@ void StudyDirectory::gather(const Study& study) const {
   std::string text = study.header() + '\n';
   for (std::size_t r = 0; r < study.runs(); ++r) {
     const auto row = rows.find(r);
-    text += row != rows.end() ? row->second : study.line_of(r, study.not_run());
+    text += row != rows.end() ? row->second : study.line_without_result(r);
     text += '\n';
   }
   write_file(directory_ / "runs.csv", text);

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,8 @@ class StudyDirectory {
   static StudyDirectory look(const std::filesystem::path& directory);
 
   [[nodiscard]] const std::filesystem::path& path() const { return directory_; }
+  /// Content of study.json. Throws FileError if it is damaged.
+  [[nodiscard]] nlohmann::ordered_json begun() const;
   [[nodiscard]] StudyRows rows() const;
   /// Add a row to the file of this process.
   void add(std::size_t run, const std::string& row);

@@ -192,7 +192,7 @@ TEST(Picture, HasALegendInTheColoursOfItsMap) {
     int darkest = 255;
     for (double dy = -4; dy <= 4; ++dy)
       for (double dx = -8; dx <= 8; ++dx) {
-        const double x = label.x + dx + (label.align == Align::left ? 8 : 0);
+        const double x = label.x + dx + (label.is_centred ? 0 : 8);
         darkest = std::min(darkest, image.at(std::min(x, image.width - 1.0), label.y + dy)[1]);
       }
     EXPECT_LT(darkest, 140) << label.text;
