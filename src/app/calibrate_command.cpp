@@ -119,20 +119,14 @@ CalibrationProblem problem_of(const CalibrateOptions& options) {
 
 // Print why the targets were not met, and the best trial.
 void print_missed(const CalibrationProblem& problem, const Calibration& calibration) {
+  if (calibration.end == CalibrationEnd::met) return;
   const std::string runs = plural(calibration.trials, "run");
-  switch (calibration.end) {
-    case CalibrationEnd::met:
-      return;
-    case CalibrationEnd::not_met:
-      fmt::print(stderr, "plica: not met: no values within the bounds meet all targets ({})\n", runs);
-      break;
-    case CalibrationEnd::trials_spent:
-      fmt::print(stderr, "plica: not met in {}; allow more --trials, or narrow the bounds\n", runs);
-      break;
-    case CalibrationEnd::interrupted:
-      fmt::print(stderr, "plica: interrupted after {}\n", runs);
-      break;
-  }
+  const std::string why = calibration.end == CalibrationEnd::not_met
+                              ? fmt::format("not met: no values within the bounds meet all targets ({})", runs)
+                          : calibration.end == CalibrationEnd::trials_spent
+                              ? fmt::format("not met in {}; allow more --trials, or narrow the bounds", runs)
+                              : fmt::format("interrupted after {}", runs);
+  fmt::print(stderr, "plica: {}\n", why);
   if (!calibration.best) {
     fmt::print(stderr, "plica: no run has values of all targets\n");
     return;

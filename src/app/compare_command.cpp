@@ -23,11 +23,9 @@ void compare(const CompareOptions& options) {
   const Frame a = frame_to_compare(run_a, options.time_s), b = frame_to_compare(run_b, options.time_s);
   const nlohmann::ordered_json comparison = compare_runs(run_a, a, run_b, b);
   if (!options.out.empty()) write_distances(options.out, a, b);
-  fmt::print(
-      "{}",
-      options.json
-          ? comparison.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
-          : comparison_text(comparison));
+  fmt::print("{}", options.json
+                       ? comparison.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
+                       : comparison_text(comparison));
 }
 
 }  // namespace

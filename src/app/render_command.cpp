@@ -35,10 +35,15 @@ double place_in(const std::string& text) {
   return *place;
 }
 
+// Numbers on both sides of a letter; empty for another text.
+std::array<std::optional<double>, 2> numbers_in(const std::string& text, char between) {
+  const std::size_t at = text.find(between);
+  if (at == std::string::npos) return {};
+  return {number_in(std::string_view(text).substr(0, at)), number_in(std::string_view(text).substr(at + 1))};
+}
+
 ColourRange range_in(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  const auto low = number_in(std::string_view(text).substr(0, colon));
-  const auto high = colon == std::string::npos ? std::nullopt : number_in(std::string_view(text).substr(colon + 1));
+  const auto [low, high] = numbers_in(text, ':');
   if (!low || !high || *low >= *high)
     throw UsageError(
         fmt::format("--range {}: not LOW:HIGH with LOW < HIGH; write, for example, 0:30 or --range=-2:2", text));
@@ -46,16 +51,14 @@ ColourRange range_in(const std::string& text) {
 }
 
 void read_size(const std::string& text, PictureOptions& options) {
-  const std::size_t by = text.find('x');
-  const auto width = number_in(std::string_view(text).substr(0, by));
-  const auto height = by == std::string::npos ? std::nullopt : number_in(std::string_view(text).substr(by + 1));
-  for (const auto side : {width, height})
+  const auto sides = numbers_in(text, 'x');
+  for (const auto& side : sides)
     if (!side || *side != std::floor(*side) || *side < smallest_picture_px || *side > largest_picture_px)
       throw UsageError(
           fmt::format("--size {}: not WIDTHxHEIGHT in whole pixels from {} to {}; write, for example, 1200x800", text,
                       smallest_picture_px, largest_picture_px));
-  options.width_px = static_cast<int>(*width);
-  options.height_px = static_cast<int>(*height);
+  options.width_px = static_cast<int>(*sides[0]);
+  options.height_px = static_cast<int>(*sides[1]);
 }
 
 PictureOptions options_of(const RenderCommand& command) {
@@ -133,7 +136,8 @@ int draw_movie(const RenderCommand& command, const RunPictures& run, bool even) 
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     write_picture(file_of(i), painter.png(run.picture({times_s[i]})));
     const bool last = i + 1 == times_s.size() || interrupted();
-    line.show(fmt::format("{} of {} pictures{}", i + 1, times_s.size(), last && line.is_on_terminal() ? "\n" : ""), last);
+    line.show(fmt::format("{} of {} pictures{}", i + 1, times_s.size(), last && line.is_on_terminal() ? "\n" : ""),
+              last);
     if (interrupted()) return interrupted_status();
   }
   if (!command.quiet)
@@ -165,8 +169,7 @@ void add_render_command(CLI::App& app, int& status) {
       app.add_subcommand("render", "draw pictures of a run (no screen needed): one time, several, or all");
   auto options = std::make_shared<RenderCommand>();
   command->add_option("DIR", options->directory, "results of a run")->required();
-  add_out_option(*command, options->out, "FILE.png to write; with --movie FILE_00000.png, ...")
-      ->required();
+  add_out_option(*command, options->out, "FILE.png to write; with --movie FILE_00000.png, ...")->required();
   add_view_option(*command, options->pictures.views);
   command
       ->add_option("--at-x-um", options->at_x_um,

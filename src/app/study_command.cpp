@@ -137,7 +137,7 @@ void gather(const std::string& out) {
   const ThreadCount one(1);
   auto [directory, study] = StudyDirectory::open_to_run(out);
   write_table(study, directory);
-  if (was_submitted(directory)) fmt::print("{}\n", go_on_on_slurm(study, directory));
+  if (was_submitted(directory)) fmt::print("{}\n", go_on_on_slurm(directory));
 }
 
 void print_status(const std::string& out) {

@@ -189,8 +189,8 @@ class Composer {
     if (picture_.rows.size() > 1) {
       const std::vector<std::string> lines = heading_lines(picture_.rows[row].view.heading(), broken_names_);
       for (std::size_t i = 0; i < lines.size(); ++i)
-        layout_.labels.push_back({lines[i], (0.3 + line_em * (static_cast<double>(i) + 0.5)) * em_, middle, em_,
-                                  true, false, true});
+        layout_.labels.push_back(
+            {lines[i], (0.3 + line_em * (static_cast<double>(i) + 0.5)) * em_, middle, em_, true, false, true});
     }
     add_marks(row, middle);
   }
@@ -268,8 +268,8 @@ class Composer {
       const Box step = {box.left, box.bottom + place * height, box.width, 0.85 * height};
       layout_.rectangles.push_back({{step.left - 1, step.bottom - 1, step.width + 2, step.height + 2}, ink});
       layout_.rectangles.push_back({step, colour_of(picture_.field.map(), picture_.range, place)});
-      layout_.labels.push_back({picture_.step_names[value], box.left + box.width + gap_em * em_,
-                                step.bottom + step.height / 2, em_, false});
+      layout_.labels.push_back(
+          {picture_.step_names[value], box.left + box.width + gap_em * em_, step.bottom + step.height / 2, em_, false});
     }
   }
 

@@ -49,7 +49,9 @@ void add_section(const Frame& frame, const ColourField& field, const View& view,
   const std::vector<double> values = field_values(frame, field);
   const std::vector<double>& cells = values_in(frame.element_scalars, "cell_id");
   using CutEdge = std::pair<NodeId, NodeId>;  // mesh edge on which a corner lies
-  const auto edge_of = [](const CutPolygon::Corner& corner) { return CutEdge(std::minmax(corner.first, corner.second)); };
+  const auto edge_of = [](const CutPolygon::Corner& corner) {
+    return CutEdge(std::minmax(corner.first, corner.second));
+  };
   struct Side {
     Segment segment;
     std::vector<double> cells;

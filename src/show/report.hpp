@@ -14,11 +14,25 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "show/report_frames.hpp"
 
 namespace plica {
+
+/// Bytes for an element of the page with this id; inserted deflated, as base64.
+struct PageBytes {
+  std::string id, bytes;
+};
+
+/// Bundled pages without data, for runs and studies; empty in builds without the viewer.
+std::string_view report_template();
+std::string_view study_template();
+
+/// Insert title and data into a page. Throws FileError in builds without the viewer.
+std::string filled_page(std::string_view page, const std::string& title, const nlohmann::ordered_json& data,
+                        const std::vector<PageBytes>& packed);
 
 /// Largest size of the snapshots of all runs of a page before compression. Compressed and as base64 they are at most
 /// 4/3 of it: below 40 MB with the page itself.

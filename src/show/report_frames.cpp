@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "show/boundary_surface.hpp"
+
 namespace plica {
 namespace {
 
@@ -21,23 +23,44 @@ std::uint32_t region_bits(const Frame& frame, const std::vector<std::string>& re
 }
 
 FrameTopology topology_of(const Frame& frame, const std::vector<std::string>& regions) {
-  FrameTopology topology{frame.elements, {}, {}, {}, {}, {}, {}, boundary_surface_of(frame), {}};
+  FrameTopology topology{frame.elements, {}, {}, {}, {}, {}};
   const auto value = [&](const char* name, std::size_t element) {
     const auto found = frame.element_scalars.find(name);
     return found == frame.element_scalars.end() ? 0.0 : found->second[element];
   };
+  const auto whole = [](const auto& number) { return static_cast<std::uint32_t>(number); };
+  std::vector<std::uint32_t> elements, mothers, generations, bits, facets, elements_of_facets, faces, outlines;
   const std::vector<double>& ids = values_in(frame.element_scalars, "cell_id");
   std::map<double, std::uint32_t> number;
   for (std::size_t e = 0; e < ids.size(); ++e) {
-    const auto [place, is_new] = number.emplace(ids[e], static_cast<std::uint32_t>(number.size()));
+    for (const NodeId node : frame.elements[e]) elements.push_back(whole(node.index()));
+    const auto [place, is_new] = number.emplace(ids[e], whole(number.size()));
     topology.cell_of_element.push_back(place->second);
     if (!is_new) continue;
     topology.first_element.push_back(e);
-    topology.cell_id.push_back(static_cast<std::uint32_t>(ids[e]));
-    topology.mother_id.push_back(static_cast<std::uint32_t>(value("mother_id", e) + 1));
-    topology.generation.push_back(static_cast<std::uint32_t>(value("generation", e)));
-    topology.regions.push_back(region_bits(frame, regions, e));
+    topology.cell_id.push_back(whole(ids[e]));
+    mothers.push_back(whole(value("mother_id", e) + 1));
+    generations.push_back(whole(value("generation", e)));
+    bits.push_back(region_bits(frame, regions, e));
   }
+  const BoundarySurface boundary = boundary_surface_of(frame);
+  for (const BoundaryFacet& facet : boundary.facets) {
+    for (const NodeId node : facet.nodes) facets.push_back(whole(node.index()));
+    elements_of_facets.push_back(whole(facet.element));
+    faces.push_back(whole(facet.face));
+  }
+  for (const auto& outline : boundary.outlines)
+    for (const NodeId node : outline) outlines.push_back(whole(node.index()));
+  topology.structure = {{"elements", elements, 8},
+                        {"cell_of_element", topology.cell_of_element, 1},
+                        {"facets", facets, 4},
+                        {"element_of_facet", elements_of_facets, 1},
+                        {"face_of_facet", faces, 1},
+                        {"outlines", outlines, 2},
+                        {"cell_id", topology.cell_id, 1},
+                        {"mother_id", mothers, 1},
+                        {"generation", generations, 1},
+                        {"regions", bits, 1}};
   return topology;
 }
 
@@ -65,33 +88,6 @@ FrameMoment moment_of(const Frame& frame, const std::vector<ColourField>& fields
     moment.fields.push_back(std::move(kept));
   }
   return moment;
-}
-
-template <class Ids>
-std::vector<std::uint32_t> flat(const std::vector<Ids>& lists) {
-  std::vector<std::uint32_t> numbers;
-  for (const Ids& list : lists)
-    for (const NodeId node : list) numbers.push_back(static_cast<std::uint32_t>(node.index()));
-  return numbers;
-}
-
-void pack_structure(const FrameTopology& topology, const std::string& prefix, PackedArrays& arrays) {
-  arrays.add(prefix + "elements", flat(topology.elements), 8);
-  arrays.add(prefix + "cell_of_element", topology.cell_of_element, 1);
-  std::vector<std::uint32_t> nodes, elements, faces;
-  for (const BoundaryFacet& facet : topology.boundary.facets) {
-    for (const NodeId node : facet.nodes) nodes.push_back(static_cast<std::uint32_t>(node.index()));
-    elements.push_back(static_cast<std::uint32_t>(facet.element));
-    faces.push_back(static_cast<std::uint32_t>(facet.face));
-  }
-  arrays.add(prefix + "facets", nodes, 4);
-  arrays.add(prefix + "element_of_facet", elements, 1);
-  arrays.add(prefix + "face_of_facet", faces, 1);
-  arrays.add(prefix + "outlines", flat(topology.boundary.outlines), 2);
-  arrays.add(prefix + "cell_id", topology.cell_id, 1);
-  arrays.add(prefix + "mother_id", topology.mother_id, 1);
-  arrays.add(prefix + "generation", topology.generation, 1);
-  arrays.add(prefix + "regions", topology.regions, 1);
 }
 
 using Box = std::array<Quantiser, 3>;
@@ -128,7 +124,7 @@ void pack_frames(const std::vector<FrameTopology>& topologies, ReportRun& run) {
   for (std::size_t t = 0; t < topologies.size(); ++t) {
     const FrameTopology& topology = topologies[t];
     const std::string prefix = std::to_string(t) + "/";
-    pack_structure(topology, prefix, run.frames);
+    for (const auto& [name, values, period] : topology.structure) run.frames.add(prefix + name, values, period);
     pack_moments(topology, prefix, box, run);
     ordered_json times = ordered_json::array();
     for (const FrameMoment& moment : topology.moments) times.push_back(moment.time_s);

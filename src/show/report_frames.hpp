@@ -6,9 +6,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <tuple>
 #include <vector>
 
-#include "show/boundary_surface.hpp"
 #include "show/looks.hpp"
 #include "tissue/files/frame_file.hpp"
 
@@ -73,9 +73,9 @@ struct FrameMoment {
 /// Snapshots between two divisions, with equal cells and elements.
 struct FrameTopology {
   std::vector<std::array<NodeId, 8>> elements;
-  std::vector<std::uint32_t> cell_of_element, cell_id, mother_id, generation, regions;
-  std::vector<std::size_t> first_element;  // of each cell
-  BoundarySurface boundary;
+  std::vector<std::uint32_t> cell_of_element, cell_id;
+  std::vector<std::size_t> first_element;                                                   // of each cell
+  std::vector<std::tuple<std::string, std::vector<std::uint32_t>, std::size_t>> structure;  // name, numbers, period
   std::vector<FrameMoment> moments;
 };
 

@@ -58,7 +58,8 @@ Picture rest_picture(Frame frame, const std::string& colour, const std::vector<s
   std::vector<ColourField> fields;
   for (const auto& [name, values] : frame.element_scalars) {
     const auto known = std::ranges::find(colour_fields(), name, &ColourField::name);
-    if (name != "cell_id") fields.push_back(known != colour_fields().end() ? *known : ColourField{name, name, "", name});
+    if (name != "cell_id")
+      fields.push_back(known != colour_fields().end() ? *known : ColourField{name, name, "", name});
   }
   fields.insert(fields.begin(), *std::ranges::find(colour_fields(), "region", &ColourField::name));
   Picture picture;

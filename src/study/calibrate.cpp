@@ -18,7 +18,6 @@
 #include "scenario/schema.hpp"
 #include "scenario/setup.hpp"
 #include "study/quiet_run.hpp"
-#include "study/target_search.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

@@ -62,8 +62,7 @@ std::optional<double> energy_norm(const Frame& a, const Frame& b, const Referenc
   for (std::size_t n = 0; n < rest.size(); ++n) rest[n] -= of_b->second[n];
   std::vector<HexPoints> shapes;
   for (const auto& element : b.elements) shapes.push_back(gather(rest, element));
-  return relative_energy_norm({b.elements, shapes, {}}, scenario->elasticity.poisson_ratio, of_a->second,
-                              of_b->second);
+  return relative_energy_norm({b.elements, shapes, {}}, scenario->elasticity.poisson_ratio, of_a->second, of_b->second);
 }
 
 Json compare_nodes(const Frame& a, const Frame& b) {

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -32,13 +32,8 @@ void require_room(const fs::path& directory, const std::string& run, std::size_t
 
 void run_study(const Study& study, StudyDirectory& directory, Workers workers, const std::vector<std::size_t>& runs,
                const StudyHooks& hooks) {
-  std::vector<std::size_t> open = runs;
-  if (runs.empty()) {
-    open.resize(study.runs());
-    std::iota(open.begin(), open.end(), 0);
-  }
-  const StudyRows done = directory.rows();
-  std::erase_if(open, [&](std::size_t run) { return done.contains(run); });
+  std::vector<std::size_t> open = directory.open_runs();
+  if (!runs.empty()) std::erase_if(open, [&](std::size_t run) { return !std::ranges::binary_search(runs, run); });
 
   const ThreadCount one(1);
   const auto row_of = [&](std::size_t run) -> std::string {

@@ -53,7 +53,8 @@ class Study {
   [[nodiscard]] std::string line_of(std::size_t run, const RunRow& row) const;
   /// Line of a run without a result: not_run, or crashed with a reason.
   [[nodiscard]] std::string line_without_result(std::size_t run, const std::string& crash = "") const {
-    return line_of(run, {crash.empty() ? "not_run" : "crashed", decltype(RunRow::measures)(measures_.size()), 0, 0, crash});
+    return line_of(run,
+                   {crash.empty() ? "not_run" : "crashed", decltype(RunRow::measures)(measures_.size()), 0, 0, crash});
   }
 
  private:

@@ -177,6 +177,15 @@ StudyRows StudyDirectory::rows() const {
   return rows;
 }
 
+std::vector<std::size_t> StudyDirectory::open_runs() const {
+  const StudyRows ended = rows();
+  const std::size_t runs = begun().value("runs", std::size_t{0});
+  std::vector<std::size_t> open;
+  for (std::size_t run = 0; run < runs; ++run)
+    if (!ended.contains(run)) open.push_back(run);
+  return open;
+}
+
 void StudyDirectory::add(std::size_t run, const std::string& row) {
   if (!own_rows_) {
     std::string host(256, '\0');

@@ -43,6 +43,8 @@ class StudyDirectory {
   /// Content of study.json. Throws FileError if it is damaged.
   [[nodiscard]] nlohmann::ordered_json begun() const;
   [[nodiscard]] StudyRows rows() const;
+  /// Runs without a row.
+  [[nodiscard]] std::vector<std::size_t> open_runs() const;
   /// Add a row to the file of this process.
   void add(std::size_t run, const std::string& row);
   /// Write runs.csv with all rows; runs without a row have status not_run.

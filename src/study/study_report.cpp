@@ -12,7 +12,7 @@
 #include "core/version.hpp"
 #include "record/run_scenario.hpp"
 #include "scenario/embryo_axes.hpp"
-#include "show/report_page.hpp"
+#include "show/report.hpp"
 #include "study/csv_fields.hpp"
 #include "study/study_directory.hpp"
 

@@ -1,4 +1,4 @@
-#include "study/target_search.hpp"
+#include "study/calibrate.hpp"
 
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>

@@ -10,7 +10,7 @@
 #include "core/errors.hpp"
 #include "measure/cell_columns.hpp"
 #include "show/boundary_surface.hpp"
-#include "show/packing.hpp"
+#include "show/report_frames.hpp"
 #include "support/frames.hpp"
 #include "support/tissues.hpp"
 #include "tissue/shapes/embryo.hpp"
@@ -279,8 +279,8 @@ TEST(PackedArrays, KeepsDifferencesBytePlaneByBytePlane) {
   PackedArrays arrays;
   const std::vector<std::uint16_t> small = {0x0102, 0x0304, 0x0103, 0x0300};
   const std::vector<std::uint32_t> large = {0x01020304, 0x01020303};
-  arrays.add("small", std::span<const std::uint16_t>(small), 2);
-  arrays.add("large", std::span<const std::uint32_t>(large), 1);
+  arrays.add("small", small, 2);
+  arrays.add("large", large, 1);
   // Differences: 0102 0304 0001 fffc, then 01020304 ffffffff; lowest bytes first.
   EXPECT_EQ(arrays.bytes(), std::string("\x02\x04\x01\xfc\x01\x03\x00\xff\x04\xff\x03\xff\x02\xff\x01\xff", 16));
   const auto index = arrays.index();

@@ -7,7 +7,6 @@
 #include "record/mesh_writer.hpp"
 #include "show/looks.hpp"
 #include "show/report.hpp"
-#include "show/report_run.hpp"
 #include "support/own_folder.hpp"
 #include "support/tissues.hpp"
 

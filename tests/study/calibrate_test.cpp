@@ -13,7 +13,6 @@
 #include "core/files.hpp"
 #include "scenario/print.hpp"
 #include "study/quiet_run.hpp"
-#include "study/target_search.hpp"
 #include "support/block_scenario.hpp"
 
 namespace plica {
