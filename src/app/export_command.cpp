@@ -38,7 +38,7 @@ void export_frame(const ExportCommand& command) {
         fmt::format("--out {}: neither FILE.vtp (surface) nor a directory (tables); give one of these", command.out));
   if (as_surface) require_free(command.out, command.overwrite);
   const ReferenceRun run(command.directory);
-  const double time_s = snapshot_time_s(command.time, command.directory, run.times_s());
+  const double time_s = snapshot_time_s(command.time, run.times_s());
   SurfaceMesh surface = surface_of(run.frame_at(time_s).value(), command.side == "apical");
   surface.time_s = time_s;
   as_surface ? write_polygons(command.out, surface) : write_tables(surface, command);
@@ -54,9 +54,7 @@ void add_export_command(CLI::App& app, int&) {
       "export", "export a snapshot as one polygon per cell: a VTK surface, or tables for vertex models");
   auto options = std::make_shared<ExportCommand>();
   command->add_option("DIR", options->directory, "results of a run")->required();
-  command
-      ->add_option("--out,--output,-o", options->out,
-                   "FILE.vtp to write; or directory for vert.csv, edge.csv, face.csv")
+  add_out_option(*command, options->out, "FILE.vtp to write; or directory for vert.csv, edge.csv, face.csv")
       ->required();
   command->add_option("--time", options->time, "time of the snapshot: 5min, 300s, 300 or last")->capture_default_str();
   command->add_option("--side", options->side, "surface to export")

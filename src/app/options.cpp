@@ -90,12 +90,13 @@ std::optional<double> seconds_in(const std::string& time) {
   return *value * unit_s;
 }
 
-double snapshot_time_s(const std::string& time, const std::string& directory, const std::vector<double>& times_s) {
+double snapshot_time_s(const std::string& time, const std::vector<double>& times_s) {
   const auto wanted_s = seconds_in(time);
   const auto found_s = wanted_s ? nearest_time_s(times_s, *wanted_s) : times_s.back();
   if (!found_s)
-    throw UsageError(fmt::format("--time {}: {} has snapshots from {} s to {} s; give a time in this range", time,
-                                 directory, times_s.front(), times_s.back()));
+    throw UsageError(
+        fmt::format("--time {}: the run has snapshots from {:.4g} s to {:.4g} s; give a time in this range", time,
+                    times_s.front(), times_s.back()));
   return *found_s;
 }
 

@@ -41,7 +41,7 @@ void require_new(const std::string& out, const std::vector<const char*>& endings
 /// Convert "5min", "300s" or "300" to seconds; empty for "last". Throws UsageError for other text.
 std::optional<double> seconds_in(const std::string& time);
 /// Time of the snapshot nearest to that of --time. Throws UsageError outside the run.
-double snapshot_time_s(const std::string& time, const std::string& directory, const std::vector<double>& times_s);
+double snapshot_time_s(const std::string& time, const std::vector<double>& times_s);
 
 /// Set the number of threads: `asked`, else OMP_NUM_THREADS, else as many as the mesh can keep busy. Results do not
 /// depend on it.

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include "app/commands.hpp"
@@ -78,8 +81,7 @@ std::vector<double> times_of(const RenderCommand& command, const RunPictures& ru
     return command.strip || command.pictures.sections ? run.telling_times_s(panels_of_a_strip)
                                                       : std::vector<double>{run.times_s().back()};
   std::vector<double> times;
-  for (const std::string& time : command.times)
-    times.push_back(snapshot_time_s(time, command.directory, run.times_s()));
+  for (const std::string& time : command.times) times.push_back(snapshot_time_s(time, run.times_s()));
   return times;
 }
 
@@ -152,7 +154,7 @@ int render(const RenderCommand& command) {
         fmt::format("--out {0}: the file's name must end in .png; to write a movie, pip install 'plica[movie]' and, in "
                     "Python, plica.movie(\"{1}\", \"{0}\")",
                     command.out, command.directory));
-  require_new(fs::path(command.out).stem().empty() ? "" : command.out, {".png"}, command.overwrite || command.movie);
+  require_new(command.out, {".png"}, command.overwrite || command.movie);
   if (command.movie && (command.strip || !command.times.empty()))
     throw UsageError("--movie: conflicts with --strip and --time, since it draws all snapshots; remove these");
   const PictureOptions options = options_of(command);

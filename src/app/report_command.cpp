@@ -36,8 +36,9 @@ void report(const ReportOptions& options) {
   if (options.out.empty() && options.directories.size() > 1)
     throw UsageError("--out: missing; give FILE.html for a page of several runs");
   // The page of one directory follows from its results, so it may be replaced.
-  const std::filesystem::path file =
-      options.out.empty() ? std::filesystem::path(options.directories.front()) / "report.html" : options.out;
+  const std::filesystem::path file = options.out.empty()
+                                         ? std::filesystem::path(options.directories.front()) / "report.html"
+                                         : std::filesystem::path(options.out);
   require_new(file.string(), {".html"}, options.overwrite || options.out.empty());
   const std::string page = page_of(options, file);
   write_file(file, page);

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/errors.hpp"
-#include "show/picture_scene.hpp"
 
 namespace plica {
 namespace {

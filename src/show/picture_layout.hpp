@@ -1,4 +1,4 @@
-// Layout of a picture, in pixels from its left and lower edge.
+// Layout of a picture, in pixels from its left and lower edge; and the contents of its panels as triangles and lines.
 #pragma once
 
 #include <array>
@@ -54,5 +54,28 @@ double round_length(double value);
 
 /// Break a text between words into lines of at most `most` letters; longer words are kept.
 std::vector<std::string> wrapped(const std::string& text, std::size_t most);
+
+using Segment = std::array<Vec3, 2>;
+
+/// Content of a panel, in coordinates of the embryo; triangles are three consecutive corners, symmetric for a symmetric
+/// embryo.
+struct Scene {
+  Vectors corners, normals;       // um; triangles of a facet share a normal
+  std::vector<double> values;     // of the field; corners
+  bool lit = true;                // shading; without it, colours equal the legend
+  std::vector<Segment> outlines;  // of cells
+  std::vector<Segment> rest;      // reference outline, in sections
+  Vectors shell;                  // triangles of a band around the embryo
+};
+
+/// Scene of the boundary surface of a snapshot or, for a section view, the section alone. `band_um`: thickness of the
+/// shell. Throws FileError for a missing field.
+Scene make_scene(const Picture& picture, const PictureColumn& column, const View& view, double band_um);
+
+/// Unit vectors of a view, rightward and upward in the picture.
+struct Screenwise {
+  Vec3 right, up;
+};
+Screenwise screenwise(const View& view);
 
 }  // namespace plica

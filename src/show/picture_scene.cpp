@@ -1,4 +1,4 @@
-#include "show/picture_scene.hpp"
+#include "show/picture_layout.hpp"
 
 #include <cmath>
 #include <map>

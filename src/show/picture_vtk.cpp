@@ -41,7 +41,6 @@
 #include "core/errors.hpp"
 #include "core/one_thread_vtk.hpp"
 #include "show/picture_layout.hpp"
-#include "show/picture_scene.hpp"
 
 // VTK requires explicit initialization of renderer and fonts.
 VTK_MODULE_INIT(vtkRenderingOpenGL2)

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "measure/reference_run.hpp"
+#include "scenario/scenario.hpp"
 #include "show/picture.hpp"
 
 namespace plica {
@@ -35,7 +36,7 @@ class RunPictures {
  public:
   /// Throws FileError without snapshots, for a missing array, or a requested shell that the run does not have;
   /// UsageError for an unknown quantity or view.
-  RunPictures(std::filesystem::path directory, PictureOptions options);
+  RunPictures(std::filesystem::path directory, const PictureOptions& options);
 
   [[nodiscard]] const std::vector<double>& times_s() const { return times_s_; }  // of the snapshots
 
@@ -50,22 +51,15 @@ class RunPictures {
   [[nodiscard]] std::string time_text(double time_s) const;
 
  private:
-  void look_through();
   void centre(Frame& frame) const;
-  void add_rows(const Frame& rest);
-  void add_cuts(const Vectors& rest);
+  void add_rows(const Frame& rest, const PictureOptions& options, const EmbryoAxes& axes);
+  std::pair<double, double> look_through();
+  void add_shell(const std::optional<Scenario>& scenario, const Vectors& rest);
 
   ReferenceRun run_;
-  PictureOptions options_;
-  ColourField field_;
   std::vector<double> times_s_, farthest_um_;  // snapshots
-  double smallest_ = 0, largest_ = 0;          // of the field, over all snapshots
-  std::vector<PictureRow> rows_;
-  Vec3 middle_ = Vec3::Zero();  // centre of the undeformed body, if far from the origin
-  Frame rest_;
-  EmbryoAxes axes_ = anatomical_axes();
-  bool is_embryo_ = true;
-  std::optional<Capsule> shell_;
+  Vec3 middle_ = Vec3::Zero();                 // centre of the undeformed body, if far from the origin
+  Picture common_;                             // without columns
 };
 
 }  // namespace plica

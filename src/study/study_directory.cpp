@@ -42,29 +42,22 @@ void require_same_plica(const fs::path& directory, const Json& begun) {
                     directory.string(), with, this_plica()));
 }
 
-// First key that differs, with both values; empty if only comments or blanks differ.
-std::string difference(const std::string& before, const std::string& now) {
-  const std::vector<KeyDifference> all = scenario_differences(before, now);
-  if (all.empty()) return "";
-  const auto shown = [](const std::string& value) { return value.empty() ? "missing" : value; };
-  const std::string others = all.size() > 1 ? fmt::format(" (and {} more)", all.size() - 1) : "";
-  return fmt::format("{} was {} and is now {}{}", all.front().key, shown(all.front().a), shown(all.front().b), others);
-}
-
 constexpr const char* change_back = "revert the change, restart with --overwrite, or give another --out";
 
-void require_same_study(const fs::path& directory, const StudyInput& input) {
-  const std::string changed = difference(read_file(directory / "study.toml"), input.text);
-  if (!changed.empty())
-    throw UsageError(fmt::format("{}: the study {} has changed since its start: {}; {}", directory.string(), input.file,
-                                 changed, change_back));
+// Refuse a change of more than comments or blanks since the start, with the first key and both values.
+void require_unchanged(const fs::path& file, const std::string& now, const std::string& what, const char* since) {
+  const std::vector<KeyDifference> all = scenario_differences(read_file(file), now);
+  if (all.empty()) return;
+  const auto shown = [](const std::string& value) { return value.empty() ? "missing" : value; };
+  const std::string others = all.size() > 1 ? fmt::format(" (and {} more)", all.size() - 1) : "";
+  throw UsageError(fmt::format("{}: the {} has changed since {}: {} was {} and is now {}{}; {}",
+                               file.parent_path().string(), what, since, all.front().key, shown(all.front().a),
+                               shown(all.front().b), others, change_back));
 }
 
 void require_same_scenario(const fs::path& directory, const StudyInput& input) {
-  const std::string changed = difference(read_file(directory / "scenario.toml"), resolved_scenario(input));
-  if (!changed.empty())
-    throw UsageError(fmt::format("{}: the scenario {} has changed since the start of the study: {}; {}",
-                                 directory.string(), input.scenario.file, changed, change_back));
+  require_unchanged(directory / "scenario.toml", resolved_scenario(input), "scenario " + input.scenario.file,
+                    "the start of the study");
 }
 
 // Whether the directory contains files other than those of a study killed at its start.
@@ -100,7 +93,7 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   const bool holds_one = fs::exists(directory / "study.json", error);
   if (holds_one && start == Start::resumed) {
     require_same_plica(directory, result.begun());
-    require_same_study(directory, input);
+    require_unchanged(directory / "study.toml", input.text, "study " + input.file, "its start");
     require_same_scenario(directory, input);
     if (read_file(directory / "points.csv") != points_csv(study.design()))
       throw UsageError(fmt::format("{}: the points of the study, or their order, have changed since its start; {}",

@@ -8,7 +8,6 @@
 #include <iostream>
 
 #include "core/errors.hpp"
-#include "show/picture_scene.hpp"
 #include "support/frames.hpp"
 #include "tissue/shapes/embryo.hpp"
 

@@ -14,7 +14,6 @@
 #include "core/errors.hpp"
 #include "show/boundary_surface.hpp"
 #include "show/picture_layout.hpp"
-#include "show/picture_scene.hpp"
 #include "support/frames.hpp"
 #include "support/tissues.hpp"
 #include "tissue/shapes/embryo.hpp"
