@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "core/errors.hpp"
 #include "core/names.hpp"
@@ -27,17 +28,15 @@ void restart_with_short_waits(const std::string& scenario) {
   if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr) return;
   std::error_code unknown;
   if (fs::exists(scenario, unknown) && !fs::is_regular_file(scenario, unknown)) return;
-  std::vector<std::string> arguments;
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
-  for (std::string argument; std::getline(file, argument, '\0');) arguments.push_back(argument);
-  if (arguments.empty()) return;
-  std::vector<char*> pointers;
-  pointers.reserve(arguments.size() + 1);
-  for (std::string& argument : arguments) pointers.push_back(argument.data());
-  pointers.push_back(nullptr);
+  std::string words{std::istreambuf_iterator<char>(file), {}};  // each ends with a 0
+  if (words.empty()) return;
+  std::vector<char*> arguments;
+  for (std::size_t at = 0; at < words.size(); at = words.find('\0', at) + 1) arguments.push_back(&words[at]);
+  arguments.push_back(nullptr);
   // Looks, which take microseconds; sleeping at once costs a step up to half its time.
   setenv("GOMP_SPINCOUNT", "2000", 0);
-  execv("/proc/self/exe", pointers.data());
+  execv("/proc/self/exe", arguments.data());
 #endif
 }
 

@@ -18,7 +18,7 @@
 namespace plica {
 namespace {
 
-// CIE L*, a*, b* of an sRGB colour (white D65): the way back from what looks.cpp does, from CIE 15's formulas.
+// CIE L*, a*, b* of an sRGB colour (white D65), from CIE 15's formulas.
 Vec3 lab_of(const Rgb& rgb) {
   Vec3 light;
   for (int i = 0; i < 3; ++i) light[i] = rgb[i] <= 0.04045 ? rgb[i] / 12.92 : std::pow((rgb[i] + 0.055) / 1.055, 2.4);
@@ -262,11 +262,7 @@ TEST(CutByPlane, CutsASquareOutOfACube) {
   ASSERT_EQ(polygons[0].corners.size(), 4u);
   double area = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto place = [&](const CutPolygon::Corner& corner) -> Vec3 {
-      return (1 - corner.part) * frame.positions[corner.first.index()] +
-             corner.part * frame.positions[corner.second.index()];
-    };
-    const Vec3 a = place(polygons[0].corners[i]), b = place(polygons[0].corners[(i + 1) % 4]);
+    const Vec3 a = polygons[0].corners[i].of(frame.positions), b = polygons[0].corners[(i + 1) % 4].of(frame.positions);
     EXPECT_DOUBLE_EQ(a.x(), 12.5);
     area += a.cross(b).x() / 2;
   }

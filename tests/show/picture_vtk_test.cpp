@@ -112,12 +112,8 @@ TEST(Picture, ColoursOfASectionAreThoseOfTheLegend) {
       double value = 0;
       for (const auto& corner : polygon.corners) {
         const auto count = static_cast<double>(polygon.corners.size());
-        const auto between = [&](const auto& a, const auto& b) {
-          return ((1 - corner.part) * a + corner.part * b) / count;
-        };
-        middle += between(frame.positions[corner.first.index()], frame.positions[corner.second.index()]);
-        value += picture.field.on_nodes ? between(values[corner.first.index()], values[corner.second.index()])
-                                        : values[polygon.element] / count;
+        middle += corner.of(frame.positions) / count;
+        value += (picture.field.on_nodes ? corner.of(values) : values[polygon.element]) / count;
       }
       const auto [x, y] = pixel_of(layout, layout.panels[0], picture.rows[0].view, middle);
       EXPECT_LE(distance(image.at(x, y), colour_of(picture.field.map(), picture.range, value)), 4)
