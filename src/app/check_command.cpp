@@ -7,8 +7,6 @@
 #include <optional>
 #include <thread>
 
-#include "app/commands.hpp"
-#include "app/interruption.hpp"
 #include "app/options.hpp"
 #include "app/progress.hpp"
 #include "core/errors.hpp"

@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 
-#include "app/commands.hpp"
 #include "app/options.hpp"
 #include "core/errors.hpp"
 #include "study/compare.hpp"

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/commands.hpp"
 #include "app/options.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"

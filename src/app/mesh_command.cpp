@@ -5,7 +5,6 @@
 #include <memory>
 #include <numeric>
 
-#include "app/commands.hpp"
 #include "app/options.hpp"
 #include "app/progress.hpp"
 #include "core/errors.hpp"

@@ -1,12 +1,11 @@
 // Options and checks shared by commands.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/commands.hpp"
 #include "scenario/load.hpp"
 
 namespace plica {

@@ -9,8 +9,6 @@
 #include <optional>
 #include <sstream>
 
-#include "app/commands.hpp"
-#include "app/interruption.hpp"
 #include "app/options.hpp"
 #include "app/progress.hpp"
 #include "core/errors.hpp"

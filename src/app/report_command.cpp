@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "app/commands.hpp"
 #include "app/options.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"

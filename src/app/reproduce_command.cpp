@@ -4,8 +4,6 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/commands.hpp"
-#include "app/interruption.hpp"
 #include "app/options.hpp"
 #include "app/progress.hpp"
 #include "core/errors.hpp"

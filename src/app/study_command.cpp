@@ -5,8 +5,6 @@
 #include <memory>
 #include <thread>
 
-#include "app/commands.hpp"
-#include "app/interruption.hpp"
 #include "app/options.hpp"
 #include "app/progress.hpp"
 #include "core/errors.hpp"

@@ -241,10 +241,12 @@ class Composer {
       add_bar({left, bar_bottom, bar_em * em_, bar * em_});
   }
 
+  void add_frame(const Box& box) {
+    layout_.rectangles.push_back({{box.left - 1, box.bottom - 1, box.width + 2, box.height + 2}, ink});
+  }
+
   void add_bar(const Box& box) {
-    constexpr double frame_px = 1;
-    layout_.rectangles.push_back(
-        {{box.left - frame_px, box.bottom - frame_px, box.width + 2 * frame_px, box.height + 2 * frame_px}, ink});
+    add_frame(box);
     const ColourRange& range = picture_.range;
     const int pieces = static_cast<int>(std::ceil(box.height));
     for (int i = 0; i < pieces; ++i) {
@@ -265,7 +267,7 @@ class Composer {
     for (std::size_t value = 0; value < picture_.step_names.size(); ++value) {
       const auto place = static_cast<double>(value);
       const Box step = {box.left, box.bottom + place * height, box.width, 0.85 * height};
-      layout_.rectangles.push_back({{step.left - 1, step.bottom - 1, step.width + 2, step.height + 2}, ink});
+      add_frame(step);
       layout_.rectangles.push_back({step, colour_of(picture_.field.map(), picture_.range, place)});
       layout_.labels.push_back(
           {picture_.step_names[value], box.left + box.width + gap_em * em_, step.bottom + step.height / 2, em_, false});
