@@ -67,16 +67,9 @@ void bind_study(nb::module_& module) {
       .def_prop_ro("keeps_files", [](const Study& s) { return s.input().each != KeptOfRun::row; })
       .def("name_of", &Study::name_of, nb::arg("run"))
       .def("row", &row_of, nb::arg("run"), nb::arg("directory"))
+      .def("crashed", &Study::line_without_result, nb::arg("run"), nb::arg("reason"))
       .def(
-          "crashed",
-          [](const Study& s, std::size_t run, const std::string& reason) {
-            RunRow row = s.not_run();
-            row.status = "crashed", row.reason = reason;
-            return s.line_of(run, row);
-          },
-          nb::arg("run"), nb::arg("reason"))
-      .def(
-          "not_run", [](const Study& s, std::size_t run) { return s.line_of(run, s.not_run()); }, nb::arg("run"));
+          "not_run", [](const Study& s, std::size_t run) { return s.line_without_result(run); }, nb::arg("run"));
   nb::class_<StudyDirectory>(module, "StudyDirectory")
       .def_static("begin", &begin, nb::arg("directory"), nb::arg("study"), nb::arg("start"))
       .def_static("open", &StudyDirectory::open, nb::arg("directory"))

@@ -1,18 +1,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 
-#include "app/commands.hpp"
-#include "app/interruption.hpp"
-#include "app/output_file.hpp"
-#include "app/scenario_options.hpp"
-#include "app/threads.hpp"
+#include "app/options.hpp"
+#include "app/progress.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/words.hpp"
@@ -35,11 +30,10 @@ struct CalibrateOptions {
 // Check --out before the runs rather than after.
 void refuse_out(const CalibrateOptions& options, const ScenarioSource& source) {
   if (options.out.empty()) return;
-  if (!options.out.ends_with(".toml")) throw UsageError("--out " + options.out + ": the file's name must end in .toml");
   std::error_code error;
   if (fs::equivalent(options.out, source.file, error))
     throw UsageError("--out " + options.out + ": is the scenario itself; give another name");
-  require_free(options.out, options.overwrite);
+  require_new(options.out, {".toml"}, options.overwrite);
   if (fs::path folder = fs::absolute(options.out).parent_path(); !fs::is_directory(folder, error))
     throw FileError(options.out + ": its folder does not exist; create it, or give another --out");
 }
@@ -71,19 +65,15 @@ std::string results_text(const CalibrationProblem& problem, const Trial& trial) 
 // Table with one row per trial; on a terminal also a live line for the trial under way.
 class TrialTable {
  public:
-  explicit TrialTable(const CalibrationProblem& problem)
-      : problem_(problem), on_terminal_(isatty(STDERR_FILENO) != 0) {}
+  explicit TrialTable(const CalibrationProblem& problem) : problem_(problem) {}
 
   void show_progress(int number, const std::vector<double>& values, const Observation& row) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!on_terminal_ || now - last_ < std::chrono::milliseconds(100)) return;
-    last_ = now;
-    fmt::print(stderr, "\r{:>5}  {}: t = {}\033[K", number, values_text(problem_, values), moment(row.time_s()));
-    std::fflush(stderr);
+    if (!line_.is_on_terminal()) return;
+    line_.show(fmt::format("{:>5}  {}: t = {}", number, values_text(problem_, values), moment(row.time_s())));
   }
 
   void add(const Trial& trial, bool best) {
-    end_progress();
+    line_.erase();
     if (trial.number == 1) fmt::print("{}\n", header());
     std::string line = fmt::format("{:>5}", trial.number);
     for (std::size_t k = 0; k < problem_.keys.size(); ++k)
@@ -100,9 +90,7 @@ class TrialTable {
     std::fflush(stdout);
   }
 
-  void end_progress() const {
-    if (on_terminal_) fmt::print(stderr, "\r\033[K");
-  }
+  void end_progress() const { line_.erase(); }
 
  private:
   static std::size_t width(const std::string& name) { return std::max<std::size_t>(name.size(), 9); }
@@ -116,8 +104,7 @@ class TrialTable {
   }
 
   const CalibrationProblem& problem_;
-  bool on_terminal_;
-  std::chrono::steady_clock::time_point last_;
+  LiveLine line_{false};
 };
 
 CalibrationProblem problem_of(const CalibrateOptions& options) {
@@ -130,21 +117,14 @@ CalibrationProblem problem_of(const CalibrateOptions& options) {
 
 // Print why the targets were not met, and the best trial.
 void print_missed(const CalibrationProblem& problem, const Calibration& calibration) {
-  const int trials = calibration.trials;
-  const std::string runs = fmt::format("{} run{}", trials, trials == 1 ? "" : "s");
-  switch (calibration.end) {
-    case CalibrationEnd::met:
-      return;
-    case CalibrationEnd::not_met:
-      fmt::print(stderr, "plica: not met: no values within the bounds meet all targets ({})\n", runs);
-      break;
-    case CalibrationEnd::trials_spent:
-      fmt::print(stderr, "plica: not met in {}; allow more --trials, or narrow the bounds\n", runs);
-      break;
-    case CalibrationEnd::interrupted:
-      fmt::print(stderr, "plica: interrupted after {}\n", runs);
-      break;
-  }
+  if (calibration.end == CalibrationEnd::met) return;
+  const std::string runs = plural(calibration.trials, "run");
+  const std::string why = calibration.end == CalibrationEnd::not_met
+                              ? fmt::format("not met: no values within the bounds meet all targets ({})", runs)
+                          : calibration.end == CalibrationEnd::trials_spent
+                              ? fmt::format("not met in {}; allow more --trials, or narrow the bounds", runs)
+                              : fmt::format("interrupted after {}", runs);
+  fmt::print(stderr, "plica: {}\n", why);
   if (!calibration.best) {
     fmt::print(stderr, "plica: no run has values of all targets\n");
     return;
@@ -180,8 +160,7 @@ int calibrate_scenario(const CalibrateOptions& options) {
                           [&](const Trial& trial, bool best) { table.add(trial, best); }});
   table.end_progress();
   if (calibration.end == CalibrationEnd::met)
-    fmt::print("Met in {} run{}: {}\n", calibration.trials, calibration.trials == 1 ? "" : "s",
-               values_text(problem, calibration.best->values));
+    fmt::print("Met in {}: {}\n", plural(calibration.trials, "run"), values_text(problem, calibration.best->values));
   print_missed(problem, calibration);
   if (calibration.best && !options.out.empty()) {
     write_file(options.out, calibrated_toml(problem, calibration, options.out));
@@ -207,7 +186,7 @@ void add_calibrate_command(CLI::App& app, int& status) {
           "repeatable")
       ->required()
       ->allow_extra_args(false);
-  command->add_option("--out,--output,-o", options->out, "FILE.toml to write: the fitted scenario");
+  add_out_option(*command, options->out, "FILE.toml to write: the fitted scenario");
   command->add_option("--trials", options->trials, "maximum number of runs (40)")->check(CLI::Range(1, 100000));
   add_threads_option(*command, options->threads);
   command->add_flag("--overwrite", options->overwrite, "replace an existing file");

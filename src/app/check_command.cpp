@@ -7,11 +7,8 @@
 #include <optional>
 #include <thread>
 
-#include "app/commands.hpp"
-#include "app/interruption.hpp"
+#include "app/options.hpp"
 #include "app/progress.hpp"
-#include "app/scenario_options.hpp"
-#include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/threads.hpp"
@@ -20,7 +17,7 @@
 #include "scenario/print.hpp"
 #include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
-#include "study/check_study.hpp"
+#include "study/run_study.hpp"
 
 namespace plica {
 namespace {

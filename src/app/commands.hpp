@@ -3,6 +3,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <csignal>
+#include <optional>
 
 namespace plica {
 
@@ -17,17 +20,33 @@ enum ExitStatus : int {
   exit_terminated = 143,
 };
 
-void add_run_command(CLI::App& app, int& status);
-void add_compare_command(CLI::App& app, int& status);
-void add_calibrate_command(CLI::App& app, int& status);
-void add_study_command(CLI::App& app, int& status);
-void add_reproduce_command(CLI::App& app, int& status);
-void add_report_command(CLI::App& app, int& status);
-void add_render_command(CLI::App& app, int& status);
-void add_export_command(CLI::App& app, int& status);
-void add_check_command(CLI::App& app, int& status);
-void add_mesh_command(CLI::App& app, int& status);
-void add_scenarios_command(CLI::App& app, int& status);
-void add_reference_command(CLI::App& app, int& status);
+using AddCommand = void(CLI::App& app, int& status);
+AddCommand add_run_command, add_compare_command, add_calibrate_command, add_study_command, add_reproduce_command,
+    add_report_command, add_render_command, add_export_command, add_check_command, add_mesh_command,
+    add_scenarios_command, add_reference_command;
+
+// Ctrl-C and SIGTERM, for commands that stop in good order.
+inline volatile std::sig_atomic_t caught_signal = 0;
+
+/// Record SIGINT and SIGTERM instead of ending the program.
+inline void catch_interruptions() {
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int caught) { caught_signal = caught; });
+}
+
+/// Whether a signal has arrived.
+inline bool interrupted() { return caught_signal != 0; }
+
+/// Whether a signal has arrived and `seconds` have passed since the first call after it. Called often, it gives work
+/// under way time to finish.
+inline bool interrupted_for(double seconds) {
+  using Clock = std::chrono::steady_clock;
+  static std::optional<Clock::time_point> seen;
+  if (!interrupted()) return false;
+  if (!seen) seen = Clock::now();
+  return std::chrono::duration<double>(Clock::now() - *seen).count() >= seconds;
+}
+
+/// Exit status for the last signal.
+inline ExitStatus interrupted_status() { return caught_signal == SIGTERM ? exit_terminated : exit_interrupted; }
 
 }  // namespace plica

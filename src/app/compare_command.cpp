@@ -3,10 +3,9 @@
 #include <memory>
 #include <optional>
 
-#include "app/commands.hpp"
-#include "app/output_file.hpp"
+#include "app/options.hpp"
 #include "core/errors.hpp"
-#include "study/compare_report.hpp"
+#include "study/compare.hpp"
 
 namespace plica {
 namespace {
@@ -18,18 +17,14 @@ struct CompareOptions {
 };
 
 void compare(const CompareOptions& options) {
-  if (!options.out.empty() && !options.out.ends_with(".vtu"))
-    throw UsageError("--out " + options.out + ": the file's name must end in .vtu");
-  if (!options.out.empty()) require_free(options.out, options.overwrite);
+  if (!options.out.empty()) require_new(options.out, {".vtu"}, options.overwrite);
   const ReferenceRun run_a(options.a), run_b(options.b);
   const Frame a = frame_to_compare(run_a, options.time_s), b = frame_to_compare(run_b, options.time_s);
-  const Comparison comparison = compare_runs(run_a, a, run_b, b);
+  const nlohmann::ordered_json comparison = compare_runs(run_a, a, run_b, b);
   if (!options.out.empty()) write_distances(options.out, a, b);
-  fmt::print(
-      "{}",
-      options.json
-          ? comparison_json(comparison).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
-          : comparison_text(comparison));
+  fmt::print("{}", options.json
+                       ? comparison.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n"
+                       : comparison_text(comparison));
 }
 
 }  // namespace
@@ -40,7 +35,7 @@ void add_compare_command(CLI::App& app, int&) {
   command->add_option("DIR_A", options->a, "results of a run")->required();
   command->add_option("DIR_B", options->b, "results of the reference run")->required();
   command->add_option("--time_s", options->time_s, "time of the snapshots to compare (default: the last)");
-  command->add_option("--out,--output,-o", options->out, "FILE.vtu to write: the mesh of A with its distance from B");
+  add_out_option(*command, options->out, "FILE.vtu to write: the mesh of A with its distance from B");
   command->add_flag("--json", options->json, "print JSON instead of a table");
   command->add_flag("--overwrite", options->overwrite, "replace an existing file");
   command->footer(

@@ -1,13 +1,9 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 
-#include "app/commands.hpp"
-#include "app/output_file.hpp"
-#include "app/times.hpp"
+#include "app/options.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "measure/reference_run.hpp"
@@ -23,24 +19,11 @@ struct ExportCommand {
   bool overwrite = false, quiet = false;
 };
 
-/// Index of the snapshot nearest to a time; the last one for "last".
-std::size_t place_of(const std::string& text, const std::vector<double>& times_s) {
-  const auto wanted_s = seconds_in(text);
-  if (!wanted_s) return times_s.size() - 1;
-  const double last_gap = times_s.size() > 1 ? times_s.back() - times_s[times_s.size() - 2] : 0;
-  if (*wanted_s < times_s.front() - 1e-6 || *wanted_s > times_s.back() + last_gap / 2 + 1e-6)
-    throw UsageError(fmt::format("--time {}: the run has snapshots from {} s to {} s; give a time in this range", text,
-                                 times_s.front(), times_s.back()));
-  return static_cast<std::size_t>(
-      std::ranges::min_element(times_s, {}, [&](double time_s) { return std::abs(time_s - *wanted_s); }) -
-      times_s.begin());
-}
-
 void write_tables(const SurfaceMesh& surface, const ExportCommand& command) {
   const fs::path directory = command.out;
   const auto [vertices, edges, faces] = tables_of(surface);
   const auto files = {std::pair("vert.csv", &vertices), {"edge.csv", &edges}, {"face.csv", &faces}};
-  for (const auto& [name, text] : files) require_free(directory / name, command.overwrite);
+  for (const auto& [name, text] : files) require_free((directory / name).string(), command.overwrite);
   std::error_code error;
   fs::create_directories(directory, error);
   if (error) throw FileError(fmt::format("{}: {}", command.out, error.message()));
@@ -54,14 +37,13 @@ void export_frame(const ExportCommand& command) {
         fmt::format("--out {}: neither FILE.vtp (surface) nor a directory (tables); give one of these", command.out));
   if (as_surface) require_free(command.out, command.overwrite);
   const ReferenceRun run(command.directory);
-  const std::vector<double> times_s = run.times_s();
-  const std::size_t place = place_of(command.time, times_s);
-  SurfaceMesh surface = surface_of(run.frame(place), command.side == "apical");
-  surface.time_s = times_s[place];
+  const double time_s = snapshot_time_s(command.time, run.times_s());
+  SurfaceMesh surface = surface_of(run.frame_at(time_s).value(), command.side == "apical");
+  surface.time_s = time_s;
   as_surface ? write_polygons(command.out, surface) : write_tables(surface, command);
   if (!command.quiet)
     fmt::print("{}: {} polygons, {} vertices at {:.4g} s\n", command.out, surface.ends.size(), surface.points.size(),
-               times_s[place]);
+               time_s);
 }
 
 }  // namespace
@@ -71,9 +53,7 @@ void add_export_command(CLI::App& app, int&) {
       "export", "export a snapshot as one polygon per cell: a VTK surface, or tables for vertex models");
   auto options = std::make_shared<ExportCommand>();
   command->add_option("DIR", options->directory, "results of a run")->required();
-  command
-      ->add_option("--out,--output,-o", options->out,
-                   "FILE.vtp to write; or directory for vert.csv, edge.csv, face.csv")
+  add_out_option(*command, options->out, "FILE.vtp to write; or directory for vert.csv, edge.csv, face.csv")
       ->required();
   command->add_option("--time", options->time, "time of the snapshot: 5min, 300s, 300 or last")->capture_default_str();
   command->add_option("--side", options->side, "surface to export")

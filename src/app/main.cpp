@@ -45,11 +45,15 @@ std::string unknown_word(const CLI::App& app, const std::vector<std::string>& wo
   return "";
 }
 
+int failed(ExitStatus status, const std::string& why) {
+  fmt::print(stderr, "plica: {}\n", why);
+  return status;
+}
+
 int refuse(const CLI::App& app, const CLI::ParseError& error, const std::vector<std::string>& words) {
   const std::string unknown = error.get_exit_code() == 0 ? "" : unknown_word(app, words);
   if (unknown.empty()) return app.exit(error) == 0 ? exit_done : exit_usage;
-  fmt::print(stderr, "plica: {}\n", printable(unknown));
-  return exit_usage;
+  return failed(exit_usage, printable(unknown));
 }
 
 }  // namespace
@@ -66,18 +70,10 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("plica {} ({}, {})", version(), commit(), compiler()));
   app.require_subcommand(1);
   int status = exit_done;
-  add_run_command(app, status);
-  add_compare_command(app, status);
-  add_calibrate_command(app, status);
-  add_study_command(app, status);
-  add_reproduce_command(app, status);
-  add_report_command(app, status);
-  add_render_command(app, status);
-  add_export_command(app, status);
-  add_check_command(app, status);
-  add_mesh_command(app, status);
-  add_scenarios_command(app, status);
-  add_reference_command(app, status);
+  for (AddCommand* add : {add_run_command, add_compare_command, add_calibrate_command, add_study_command,
+                          add_reproduce_command, add_report_command, add_render_command, add_export_command,
+                          add_check_command, add_mesh_command, add_scenarios_command, add_reference_command})
+    add(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -86,24 +82,16 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}\n", error.what());
     return exit_usage;
   } catch (const UsageError& error) {
-    fmt::print(stderr, "plica: {}\n", printable(error.what()));
-    return exit_usage;
+    return failed(exit_usage, printable(error.what()));
   } catch (const FileError& error) {
-    fmt::print(stderr, "plica: {}\n", printable(error.what()));
-    return exit_files;
+    return failed(exit_files, printable(error.what()));
   } catch (const std::system_error& error) {  // fmt::print to a full disk or a closed pipe
-    fmt::print(stderr, "plica: standard output cannot be written: {}\n", error.code().message());
-    return exit_files;
+    return failed(exit_files, "standard output cannot be written: " + error.code().message());
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "plica: out of memory; use fewer cells, or fewer elements per cell\n");
-    return exit_gave_up;
+    return failed(exit_gave_up, "out of memory; use fewer cells, or fewer elements per cell");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "plica: {}\n", error.what());
-    return exit_gave_up;
+    return failed(exit_gave_up, error.what());
   }
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    fmt::print(stderr, "plica: standard output cannot be written\n");
-    return exit_files;
-  }
-  return status;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  return failed(exit_files, "standard output cannot be written");
 }

@@ -1,27 +1,20 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <omp.h>
 
 #include <algorithm>
 #include <memory>
 #include <numeric>
 
-#include "app/commands.hpp"
-#include "app/output_file.hpp"
+#include "app/options.hpp"
 #include "app/progress.hpp"
-#include "app/scenario_options.hpp"
-#include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "core/names.hpp"
 #include "record/mesh_writer.hpp"
 #include "scenario/check_tissue.hpp"
 #include "scenario/rest_arrays.hpp"
 #include "scenario/setup.hpp"
-#include "scenario/suggest.hpp"
 #include "scenario/words.hpp"
-#include "show/named.hpp"
-#include "show/rest_picture.hpp"
+#include "show/run_pictures.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/mesh_quality.hpp"
 
@@ -74,28 +67,9 @@ struct MeshCommand {
   bool overwrite = false;
 };
 
-void draw(const MeshCommand& command, Frame frame, const EmbryoAxes& axes) {
-  const std::vector<std::string> colours = colours_of_mesh(frame);
-  if (std::ranges::find(colours, command.colour) == colours.end()) {
-    const auto nearest = nearest_name(command.colour, colours);
-    throw UsageError(fmt::format("--color {}: not an array of the mesh; {}available: {}", command.colour,
-                                 nearest ? fmt::format("use {} (nearest match); ", *nearest) : "",
-                                 fmt::join(colours, ", ")));
-  }
-  std::vector<View> wanted;
-  std::vector<View> known = views_of(frame);
-  name_views(known, axes);
-  for (const std::string& name : command.views) wanted.push_back(named("--view", name, known));
-  if (wanted.empty()) wanted.push_back(known.front());
-  Painter painter;
-  write_file(command.out, painter.png(rest_picture(std::move(frame), command.colour, wanted, axes)));
-}
-
 void mesh(const MeshCommand& command) {
   const bool as_picture = command.out.ends_with(".png");
-  if (!as_picture && !command.out.ends_with(".vtu"))
-    throw UsageError("--out " + command.out + ": the file's name must end in .vtu, or in .png for a picture");
-  require_free(command.out, command.overwrite);
+  require_new(command.out, {".vtu", ".png"}, command.overwrite);
   if (command.threads > 0) omp_set_num_threads(command.threads);
   const Scenario scenario = command.scenario.load();
   const Tissue tissue = [&] {
@@ -120,7 +94,8 @@ void mesh(const MeshCommand& command) {
                                    {"hanging_nodes", groups.hanging}})
     if (!list.empty()) arrays.lists.emplace_back(name, list);
   if (as_picture)
-    draw(command, frame_of(tissue, tissue.rest_positions, arrays), axes_of(scenario.embryo));
+    write_file(command.out, Painter().png(rest_picture(frame_of(tissue, tissue.rest_positions, arrays), command.colour,
+                                                       command.views, axes_of(scenario.embryo))));
   else
     write_mesh(command.out, tissue, tissue.rest_positions, arrays);
   print_quality(tissue);
@@ -136,19 +111,10 @@ void add_mesh_command(CLI::App& app, int&) {
       "mesh", "write the undeformed mesh with its cell data, or a picture of it; print the mesh quality");
   auto options = std::make_shared<MeshCommand>();
   options->scenario.add_to(*command);
-  command->add_option("--out,--output,-o", options->out, "FILE.vtu to write, or FILE.png")->required();
-  command
-      ->add_option("--color", options->colour,
-                   "cell array to colour by: region, strength_contraction.NAME, young_modulus_Pa, ...")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command->add_option("--colour", options->colour)->group("");  // British spelling, not shown in the help
-  command
-      ->add_option("--view", options->views,
-                   fmt::format("views, one row each: {} (default: antero-ventral; open sheets: apical)",
-                               fmt::join(names_of(views()), ", ")))
-      ->delimiter(',')
-      ->type_name("NAME,...");
+  add_out_option(*command, options->out, "FILE.vtu to write, or FILE.png")->required();
+  add_colour_option(*command, options->colour,
+                    "cell array to colour by: region, strength_contraction.NAME, young_modulus_Pa, ...");
+  add_view_option(*command, options->views);
   add_threads_option(*command, options->threads);
   command->add_flag("--overwrite", options->overwrite, "replace an existing file");
   command->footer(

@@ -35,10 +35,28 @@ void say(std::string_view text) {
   if (::write(STDERR_FILENO, text.data(), text.size()) > 0) is_said = 1;
 }
 
+std::string bar(double part) {
+  constexpr std::size_t width = 24;
+  const auto filled = static_cast<std::size_t>(part * width);
+  return '[' + std::string(filled, '#') + std::string(width - filled, '.') + ']';
+}
+
 }  // namespace
 
-Progress::Progress(const RunControls& controls, bool quiet)
-    : controls_(controls), quiet_(quiet), on_terminal_(isatty(STDERR_FILENO) != 0) {}
+LiveLine::LiveLine(bool quiet) : quiet_(quiet), on_terminal_(::isatty(STDERR_FILENO) != 0) {}
+
+void LiveLine::show(const std::string& text, bool is_last) {
+  const auto now = Clock::now();
+  if (quiet_ || (!is_last && now - last_ < std::chrono::milliseconds(on_terminal_ ? 100 : 10'000))) return;
+  last_ = now;
+  // Clear to the end of the line, since the next line may be shorter.
+  fmt::print(stderr, "{}{}{}", on_terminal_ ? "\r" : "", text, on_terminal_ ? "\033[K" : "\n");
+  std::fflush(stderr);
+}
+
+void LiveLine::erase() const {
+  if (!quiet_ && on_terminal_) fmt::print(stderr, "{}", erased);
+}
 
 // Towards the end of time or, as speeds decay exponentially, towards rest: whichever is nearer.
 double Progress::part_done(const Observation& row) const {
@@ -51,48 +69,19 @@ double Progress::part_done(const Observation& row) const {
 
 void Progress::show(const Observation& row) {
   fastest_um_per_s_ = std::max(fastest_um_per_s_, fastest_node(row));
-  if (quiet_) return;
-  const auto now = Clock::now();
-  const double since_last_s = std::chrono::duration<double>(now - last_).count();
-  if (since_last_s < (on_terminal_ ? 0.1 : 10.0)) return;
-  last_ = now;
-  const double part = part_done(row), elapsed_s = std::chrono::duration<double>(now - start_).count();
-  const std::string left = part > 0.02 ? fmt::format("{:.0f} s left", elapsed_s * (1 - part) / part) : "";
-  constexpr int width = 24;
-  const int filled = static_cast<int>(std::lround(part * width));
-  const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
-  const std::string line =
-      fmt::format("[{}] {:3.0f} %  t = {:>10}  {}  fastest node {:9.3g} um/min  {}", bar, 100 * part,
-                  moment(row.time_s()), extent(row), fastest_node(row) / units::um_per_minute, left);
-  // Clear to the end of the line, since the next line may be shorter.
-  fmt::print(stderr, "{}{}{}", on_terminal_ ? "\r" : "", line, on_terminal_ ? "\033[K" : "\n");
-  std::fflush(stderr);
+  const double part = part_done(row);
+  const std::string left = part > 0.02 ? fmt::format("{:.0f} s left", line_.elapsed_s() * (1 - part) / part) : "";
+  line_.show(fmt::format("{} {:3.0f} %  t = {:>10}  {}  fastest node {:9.3g} um/min  {}", bar(part), 100 * part,
+                         moment(row.time_s()), extent(row), fastest_node(row) / units::um_per_minute, left));
 }
-
-void Progress::finish() {
-  if (!quiet_ && on_terminal_) fmt::print(stderr, "\r\033[K");
-}
-
-RunsProgress::RunsProgress(std::size_t before, std::size_t runs, bool quiet)
-    : before_(before), runs_(runs), quiet_(quiet), on_terminal_(::isatty(STDERR_FILENO) != 0) {}
 
 void RunsProgress::show(std::size_t done, std::size_t lost) {
-  const auto time = Clock::now();
-  const auto pause = std::chrono::milliseconds(on_terminal_ ? 100 : 10'000);
-  if (quiet_ || done <= before_ || (time - last_ < pause && done < runs_)) return;
-  last_ = time;
-  const double elapsed_s = std::chrono::duration<double>(time - start_).count();
-  const double left_s = elapsed_s * static_cast<double>(runs_ - done) / static_cast<double>(done - before_);
-  constexpr std::size_t width = 24;
-  const std::size_t filled = width * done / runs_;
-  fmt::print(stderr, "{}[{}{}] {} of {} runs{}, {} left{}", on_terminal_ ? "\r" : "", std::string(filled, '#'),
-             std::string(width - filled, '.'), done, runs_, lost > 0 ? fmt::format(", {} without result", lost) : "",
-             duration(left_s), on_terminal_ ? "\033[K" : "\n");
-  std::fflush(stderr);
-}
-
-void RunsProgress::finish() const {
-  if (!quiet_ && on_terminal_) fmt::print(stderr, "\r\033[K");
+  if (done <= before_) return;
+  const double part = static_cast<double>(done) / static_cast<double>(runs_);
+  const double left_s = line_.elapsed_s() * static_cast<double>(runs_ - done) / static_cast<double>(done - before_);
+  line_.show(fmt::format("{} {} of {} runs{}, {} left", bar(part), done, runs_,
+                         lost > 0 ? fmt::format(", {} without result", lost) : "", duration(left_s)),
+             done == runs_);
 }
 
 DelayedNotice::DelayedNotice() {

@@ -3,28 +3,41 @@
 
 #include <chrono>
 #include <cstddef>
+#include <string>
 
 #include "measure/observation.hpp"
 #include "simulation/controls.hpp"
 
 namespace plica {
 
-class Progress {
+class LiveLine {
  public:
-  Progress(const RunControls& controls, bool quiet);
-  void show(const Observation& row);
-  /// Erase the live line.
-  void finish();
+  explicit LiveLine(bool quiet);
+  /// Replace the line, not more often than one can read.
+  void show(const std::string& text, bool is_last = false);
+  void erase() const;
+
+  [[nodiscard]] bool is_on_terminal() const { return on_terminal_; }
+  [[nodiscard]] double elapsed_s() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
  private:
   using Clock = std::chrono::steady_clock;
+  bool quiet_, on_terminal_;
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+};
 
+/// Progress of one run.
+class Progress {
+ public:
+  Progress(const RunControls& controls, bool quiet) : controls_(controls), line_(quiet) {}
+  void show(const Observation& row);
+  void finish() const { line_.erase(); }
+
+ private:
   [[nodiscard]] double part_done(const Observation& row) const;
 
   const RunControls& controls_;
-  bool quiet_;
-  bool on_terminal_;
-  Clock::time_point start_ = Clock::now(), last_ = start_;
+  LiveLine line_;
   double fastest_um_per_s_ = 0;
 };
 
@@ -32,17 +45,15 @@ class Progress {
 class RunsProgress {
  public:
   /// `before`: runs that were complete at the start or resumption.
-  RunsProgress(std::size_t before, std::size_t runs, bool quiet);
+  RunsProgress(std::size_t before, std::size_t runs, bool quiet) : before_(before), runs_(runs), line_(quiet) {}
 
   /// `lost`: runs that ended without a result.
   void show(std::size_t done, std::size_t lost = 0);
-  void finish() const;
+  void finish() const { line_.erase(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
   std::size_t before_, runs_;
-  bool quiet_, on_terminal_;
-  Clock::time_point start_ = Clock::now(), last_ = start_;
+  LiveLine line_;
 };
 
 /// Notice "building the embryo ..." on standard error, printed once after 3 s if that is a terminal. The destructor

@@ -1,20 +1,20 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <sstream>
 
-#include "app/commands.hpp"
-#include "app/interruption.hpp"
-#include "app/output_file.hpp"
-#include "app/times.hpp"
+#include "app/options.hpp"
+#include "app/progress.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/names.hpp"
 #include "core/numbers.hpp"
-#include "show/named.hpp"
 #include "show/run_pictures.hpp"
 
 namespace plica {
@@ -23,10 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RenderCommand {
-  std::string directory, out, colour = "displacement", range, size;
-  std::vector<std::string> views, times, at_x_um;
-  bool strip = false, sections = false, movie = false, no_edges = false, shell = false, overwrite = false,
-       quiet = false;
+  std::string directory, out, range, size;
+  std::vector<std::string> times, at_x_um;
+  PictureOptions pictures;  // without what the texts above say
+  bool strip = false, movie = false, no_edges = false, overwrite = false, quiet = false;
 };
 
 double place_in(const std::string& text) {
@@ -36,10 +36,15 @@ double place_in(const std::string& text) {
   return *place;
 }
 
+// Numbers on both sides of a letter; empty for another text.
+std::array<std::optional<double>, 2> numbers_in(const std::string& text, char between) {
+  const std::size_t at = text.find(between);
+  if (at == std::string::npos) return {};
+  return {number_in(std::string_view(text).substr(0, at)), number_in(std::string_view(text).substr(at + 1))};
+}
+
 ColourRange range_in(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  const auto low = number_in(std::string_view(text).substr(0, colon));
-  const auto high = colon == std::string::npos ? std::nullopt : number_in(std::string_view(text).substr(colon + 1));
+  const auto [low, high] = numbers_in(text, ':');
   if (!low || !high || *low >= *high)
     throw UsageError(
         fmt::format("--range {}: not LOW:HIGH with LOW < HIGH; write, for example, 0:30 or --range=-2:2", text));
@@ -47,50 +52,34 @@ ColourRange range_in(const std::string& text) {
 }
 
 void read_size(const std::string& text, PictureOptions& options) {
-  const std::size_t by = text.find('x');
-  const auto width = number_in(std::string_view(text).substr(0, by));
-  const auto height = by == std::string::npos ? std::nullopt : number_in(std::string_view(text).substr(by + 1));
-  for (const auto side : {width, height})
+  const auto sides = numbers_in(text, 'x');
+  for (const auto& side : sides)
     if (!side || *side != std::floor(*side) || *side < smallest_picture_px || *side > largest_picture_px)
       throw UsageError(
           fmt::format("--size {}: not WIDTHxHEIGHT in whole pixels from {} to {}; write, for example, 1200x800", text,
                       smallest_picture_px, largest_picture_px));
-  options.width_px = static_cast<int>(*width);
-  options.height_px = static_cast<int>(*height);
+  options.width_px = static_cast<int>(*sides[0]);
+  options.height_px = static_cast<int>(*sides[1]);
 }
 
 PictureOptions options_of(const RenderCommand& command) {
-  PictureOptions options;
+  PictureOptions options = command.pictures;
   for (const std::string& place : command.at_x_um) options.cuts_at_x_um.push_back(place_in(place));
-  options.sections = command.sections;
-  const bool with_cuts = command.sections || !command.at_x_um.empty();
-  options.usual_view = command.views.empty() && !with_cuts;
-  std::vector<std::string> wanted = command.views;
-  if (options.usual_view && command.strip) wanted.emplace_back("cross-section");
-  for (const std::string& name : wanted) options.views.push_back(named("--view", name, views()));
-  options.colour = command.colour;
+  options.usual_view = options.views.empty() && !options.sections && command.at_x_um.empty();
+  if (options.usual_view && command.strip) options.views.emplace_back("cross-section");
   if (!command.range.empty()) options.range = range_in(command.range);
   if (!command.size.empty()) read_size(command.size, options);
   options.edges = !command.no_edges;
-  options.shell = command.shell;
   return options;
 }
 
 std::vector<double> times_of(const RenderCommand& command, const RunPictures& run) {
   constexpr int panels_of_a_strip = 5;
   if (command.times.empty())
-    return command.strip || command.sections ? run.telling_times_s(panels_of_a_strip)
-                                             : std::vector<double>{run.times_s().back()};
+    return command.strip || command.pictures.sections ? run.telling_times_s(panels_of_a_strip)
+                                                      : std::vector<double>{run.times_s().back()};
   std::vector<double> times;
-  for (const std::string& text : command.times) {
-    const auto wanted_s = seconds_in(text);
-    const auto time_s = wanted_s ? run.nearest_time_s(*wanted_s) : run.times_s().back();
-    if (!time_s)
-      throw UsageError(fmt::format("--time {}: {} has snapshots from {} to {}; give a time in this range", text,
-                                   command.directory, run.time_text(run.times_s().front()),
-                                   run.time_text(run.times_s().back())));
-    times.push_back(*time_s);
-  }
+  for (const std::string& time : command.times) times.push_back(snapshot_time_s(time, run.times_s()));
   return times;
 }
 
@@ -141,15 +130,14 @@ int draw_movie(const RenderCommand& command, const RunPictures& run, bool even) 
   const std::string stem = command.out.substr(0, command.out.size() - 4);  // without .png
   const auto file_of = [&](std::size_t i) { return fs::path(fmt::format("{}_{:05d}.png", stem, i)); };
   for (std::size_t i = 0; i < times_s.size(); ++i) require_free(file_of(i), command.overwrite);
-  const bool on_terminal = ::isatty(STDERR_FILENO) != 0;
+  LiveLine line(command.quiet);
   catch_interruptions();
   Painter painter;
   for (std::size_t i = 0; i < times_s.size(); ++i) {
     write_picture(file_of(i), painter.png(run.picture({times_s[i]})));
     const bool last = i + 1 == times_s.size() || interrupted();
-    if (!command.quiet && (on_terminal || last || (i + 1) % 20 == 0))
-      fmt::print(stderr, "{}{} of {} pictures{}", on_terminal ? "\r" : "", i + 1, times_s.size(),
-                 !on_terminal || last ? "\n" : "");
+    line.show(fmt::format("{} of {} pictures{}", i + 1, times_s.size(), last && line.is_on_terminal() ? "\n" : ""),
+              last);
     if (interrupted()) return interrupted_status();
   }
   if (!command.quiet)
@@ -164,13 +152,11 @@ int render(const RenderCommand& command) {
         fmt::format("--out {0}: the file's name must end in .png; to write a movie, pip install 'plica[movie]' and, in "
                     "Python, plica.movie(\"{1}\", \"{0}\")",
                     command.out, command.directory));
-  if (!command.out.ends_with(".png") || fs::path(command.out).stem().empty())
-    throw UsageError("--out " + command.out + ": the file's name must end in .png");
+  require_new(command.out, {".png"}, command.overwrite || command.movie);
   if (command.movie && (command.strip || !command.times.empty()))
     throw UsageError("--movie: conflicts with --strip and --time, since it draws all snapshots; remove these");
   const PictureOptions options = options_of(command);
   for (const std::string& time : command.times) (void)seconds_in(time);
-  if (!command.movie) require_free(command.out, command.overwrite);
   const RunPictures run(command.directory, options);
   const bool even = options.width_px % 2 == 0 && options.height_px % 2 == 0;
   return command.movie ? draw_movie(command, run, even) : draw_picture(command, run);
@@ -183,20 +169,14 @@ void add_render_command(CLI::App& app, int& status) {
       app.add_subcommand("render", "draw pictures of a run (no screen needed): one time, several, or all");
   auto options = std::make_shared<RenderCommand>();
   command->add_option("DIR", options->directory, "results of a run")->required();
-  command->add_option("--out,--output,-o", options->out, "FILE.png to write; with --movie FILE_00000.png, ...")
-      ->required();
-  command
-      ->add_option("--view", options->views,
-                   fmt::format("views, one row each: {} (default: antero-ventral; open sheets: apical)",
-                               fmt::join(names_of(views()), ", ")))
-      ->delimiter(',')
-      ->type_name("NAME,...");
+  add_out_option(*command, options->out, "FILE.png to write; with --movie FILE_00000.png, ...")->required();
+  add_view_option(*command, options->pictures.views);
   command
       ->add_option("--at-x-um", options->at_x_um,
                    "cross-sections at these x, one row each; write --at-x-um=-100 for a negative first")
       ->delimiter(',')
       ->type_name("X,...");
-  command->add_flag("--sections", options->sections,
+  command->add_flag("--sections", options->pictures.sections,
                     "cross-sections at 25, 50 and 75 % of the length, at five times or those of --time");
   command->add_option("--time", options->times, "times, one column each: 5min, 300s, 300 or last (default)")
       ->delimiter(',')
@@ -204,19 +184,15 @@ void add_render_command(CLI::App& app, int& status) {
   command->add_flag("--strip", options->strip,
                     "five times, outside view and cross-section; --time and --view override these");
   command->add_flag("--movie", options->movie, "draw every snapshot; print the command that makes a movie of them");
-  command
-      ->add_option("--color", options->colour,
-                   fmt::format("quantity to colour by: {}, or a cell array of the mesh file",
-                               fmt::join(names_of(colour_fields()), ", ")))
-      ->type_name("NAME")
-      ->capture_default_str();
-  command->add_option("--colour", options->colour)->group("");  // British spelling, not shown in the help
+  add_colour_option(*command, options->pictures.colour,
+                    fmt::format("quantity to colour by: {}, or a cell array of the mesh file",
+                                fmt::join(names_of(colour_fields()), ", ")));
   command->add_option("--range", options->range, "ends of the colour scale (default: range over the run)")
       ->type_name("LOW:HIGH");
   command->add_option("--size", options->size, "size in pixels (default: at least 1000 wide, height as needed)")
       ->type_name("WxH");
   command->add_flag("--no-edges", options->no_edges, "do not draw cell outlines");
-  command->add_flag("--shell", options->shell, "draw the vitelline membrane of the run");
+  command->add_flag("--shell", options->pictures.shell, "draw the vitelline membrane of the run");
   command->add_flag("--overwrite", options->overwrite, "replace an existing file");
   command->add_flag("--quiet", options->quiet, "print only errors");
   command->footer(

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "app/commands.hpp"
-#include "app/output_file.hpp"
+#include "app/options.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "show/report.hpp"
@@ -35,13 +34,11 @@ std::string page_of(const ReportOptions& options, const std::filesystem::path& f
 void report(const ReportOptions& options) {
   if (options.out.empty() && options.directories.size() > 1)
     throw UsageError("--out: missing; give FILE.html for a page of several runs");
-  if (!options.out.empty() && !options.out.ends_with(".html"))
-    throw UsageError("--out " + options.out + ": the file's name must end in .html");
   // The page of one directory follows from its results, so it may be replaced.
   const std::filesystem::path file = options.out.empty()
                                          ? std::filesystem::path(options.directories.front()) / "report.html"
                                          : std::filesystem::path(options.out);
-  require_free(file, options.overwrite || options.out.empty());
+  require_new(file.string(), {".html"}, options.overwrite || options.out.empty());
   const std::string page = page_of(options, file);
   write_file(file, page);
   fmt::print("{} ({:.1f} MB); open it in a browser\n", file.string(), static_cast<double>(page.size()) / 1e6);
@@ -54,7 +51,7 @@ void add_report_command(CLI::App& app, int&) {
       app.add_subcommand("report", "make an HTML page of one run, of several side by side, or of a study");
   auto options = std::make_shared<ReportOptions>();
   command->add_option("DIR", options->directories, "results of a run (repeatable) or of a study")->required();
-  command->add_option("--out,--output,-o", options->out, "FILE.html to write (default for one DIR: DIR/report.html)");
+  add_out_option(*command, options->out, "FILE.html to write (default for one DIR: DIR/report.html)");
   command->add_flag("--overwrite", options->overwrite, "replace an existing file");
   command->footer(
       "The page works without a network.\n"

@@ -4,10 +4,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "app/commands.hpp"
-#include "app/interruption.hpp"
+#include "app/options.hpp"
 #include "app/progress.hpp"
-#include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/threads.hpp"
 #include "core/words.hpp"
@@ -61,7 +59,7 @@ void add_reproduce_command(CLI::App& app, int& status) {
   auto options = std::make_shared<ReproduceCommand>();
   command->add_option("WHAT", options->what, "paper, living (the living embryo), or a file of experiments")
       ->capture_default_str();
-  command->add_option("--out,--output,-o", options->out, "directory for the tables, the report and runs")->required();
+  add_out_option(*command, options->out, "directory for the tables, the report and runs")->required();
   command->add_option("--jobs", options->workers.processes, "simultaneous runs")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();

@@ -5,11 +5,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "app/commands.hpp"
-#include "app/interruption.hpp"
+#include "app/options.hpp"
 #include "app/progress.hpp"
-#include "app/scenario_options.hpp"
-#include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/units.hpp"
 #include "core/words.hpp"
@@ -114,12 +111,8 @@ int run_scenario(const RunOptions& options) {
     for (const std::string& line : advice(scenario, simulation.model()))
       if (line.starts_with("warning")) fmt::print(stderr, "{}\n", line);
 
-  using Start = RecordedRun::Start;
   RecordedRun record(options.out, scenario, source, simulation,
-                     options.resume      ? Start::resumed
-                     : options.overwrite ? Start::over
-                                         : Start::fresh,
-                     start);
+                     start_of<RecordedRun::Start>(options.resume, options.overwrite), start);
   for (const std::string& note : record.notes()) fmt::print(stderr, "plica: {}\n", note);
   if (record.is_finished()) {
     if (!options.quiet) fmt::print("{}: the run is already complete\n", options.out);
@@ -144,7 +137,7 @@ void add_run_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("run", "run a scenario");
   auto options = std::make_shared<RunOptions>();
   options->scenario.add_to(*command);
-  command->add_option("--out,--output,-o", options->out, "directory for the results")->required();
+  add_out_option(*command, options->out, "directory for the results")->required();
   add_threads_option(*command, options->threads);
   command->add_flag("--quiet", options->quiet, "print only warnings and errors");
   auto* overwrite = command->add_flag("--overwrite", options->overwrite, "replace the results in DIR");

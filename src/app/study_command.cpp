@@ -5,10 +5,8 @@
 #include <memory>
 #include <thread>
 
-#include "app/commands.hpp"
-#include "app/interruption.hpp"
+#include "app/options.hpp"
 #include "app/progress.hpp"
-#include "app/threads.hpp"
 #include "core/errors.hpp"
 #include "core/threads.hpp"
 #include "core/words.hpp"
@@ -116,11 +114,8 @@ int run(const StudyOptions& options) {
   const Study study(read_study(options.study));
   if (!options.quiet && !options.resume)
     for (const Diagnostic& note : study.notes()) fmt::print(stderr, "note: {}\n", note.text());
-  using Start = StudyDirectory::Start;
-  StudyDirectory directory = StudyDirectory::begin(options.out, study,
-                                                   options.resume      ? Start::resumed
-                                                   : options.overwrite ? Start::over
-                                                                       : Start::fresh);
+  StudyDirectory directory =
+      StudyDirectory::begin(options.out, study, start_of<StudyDirectory::Start>(options.resume, options.overwrite));
   catch_interruptions();
   if (options.resume) write_table(study, directory);  // a killed study left none
   return options.engine == "slurm" ? run_on_slurm(study, directory, options, start)
@@ -140,7 +135,7 @@ void gather(const std::string& out) {
   const ThreadCount one(1);
   auto [directory, study] = StudyDirectory::open_to_run(out);
   write_table(study, directory);
-  if (was_submitted(directory)) fmt::print("{}\n", go_on_on_slurm(study, directory));
+  if (was_submitted(directory)) fmt::print("{}\n", go_on_on_slurm(directory));
 }
 
 void print_status(const std::string& out) {
@@ -164,7 +159,7 @@ void add_study_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("study", "run a scenario many times with varied keys");
   auto options = std::make_shared<StudyOptions>();
   command->add_option("STUDY", options->study, "TOML file: scenario, varied keys, design");
-  command->add_option("--out,--output,-o", options->out, "directory for the table, runs.csv");
+  add_out_option(*command, options->out, "directory for the table, runs.csv");
   command->add_option("--jobs,-j", options->jobs, "simultaneous runs (default: as many as cores allow)")
       ->check(CLI::Range(1, 4096));
   add_threads_option(*command, options->threads, "threads per run (1)");

@@ -7,8 +7,8 @@
 #include "experiments/experiments.hpp"
 #include "scenario/schema.hpp"
 #include "scenario/suggest.hpp"
+#include "study/design.hpp"
 #include "study/quiet_run.hpp"
-#include "study/study_errors.hpp"
 
 namespace plica {
 namespace {

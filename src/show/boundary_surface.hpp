@@ -33,11 +33,18 @@ struct CutPolygon {
   struct Corner {
     NodeId first, second;
     double part = 0;
+
+    /// Interpolate values of nodes.
+    template <class Value>
+    [[nodiscard]] Value of(const std::vector<Value>& nodes) const {
+      return (1 - part) * nodes[first.index()] + part * nodes[second.index()];
+    }
   };
   std::vector<Corner> corners;
 };
 
-/// Sections of the elements by the plane `axis` = `at_um`.
+/// Sections of the elements by the plane `axis` = `at_um`, and those of the apical surface: two corners per facet.
 std::vector<CutPolygon> cut_by_plane(const Frame& frame, int axis, double at_um);
+std::vector<CutPolygon> cut_apical_surface(const Frame& frame, int axis, double at_um);
 
 }  // namespace plica

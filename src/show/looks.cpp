@@ -1,13 +1,8 @@
 #include "show/looks.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "core/errors.hpp"
-#include "core/names.hpp"
 #include "measure/cell_columns.hpp"
 #include "show/boundary_surface.hpp"
 #include "tissue/facing.hpp"
@@ -16,44 +11,14 @@
 namespace plica {
 namespace {
 
-using Lab = std::array<double, 3>;  // CIE L*a*b*, white point D65
-
-constexpr int colours_a_map = 33;
-
-// IEC 61966-2-1 and CIE 15: Lab to XYZ to linear light to sRGB.
-Rgb srgb_of(const Lab& lab) {
-  const double fy = (lab[0] + 16) / 116;
-  const std::array<double, 3> f = {fy + lab[1] / 500, fy, fy - lab[2] / 200}, white = {0.95047, 1, 1.08883};
-  std::array<double, 3> xyz{};
-  for (int i = 0; i < 3; ++i)
-    xyz[i] = white[i] * (f[i] > 6.0 / 29 ? f[i] * f[i] * f[i] : 3 * (6.0 / 29) * (6.0 / 29) * (f[i] - 4.0 / 29));
-  const std::array<double, 3> light = {3.2406 * xyz[0] - 1.5372 * xyz[1] - 0.4986 * xyz[2],
-                                       -0.9689 * xyz[0] + 1.8758 * xyz[1] + 0.0415 * xyz[2],
-                                       0.0557 * xyz[0] - 0.2040 * xyz[1] + 1.0570 * xyz[2]};
-  Rgb rgb{};
-  for (int i = 0; i < 3; ++i) {
-    const double value = light[i] <= 0.0031308 ? 12.92 * light[i] : 1.055 * std::pow(light[i], 1 / 2.4) - 0.055;
-    rgb[i] = std::clamp(value, 0.0, 1.0);
+// Read colours written as rrggbb.
+std::vector<Rgb> colours_in(const std::string& text) {
+  std::vector<Rgb> colours;
+  for (std::size_t at = 0; at < text.size(); at += 7) {
+    const unsigned long bits = std::stoul(text.substr(at, 6), nullptr, 16);
+    colours.push_back({(bits >> 16) / 255.0, (bits >> 8 & 0xff) / 255.0, (bits & 0xff) / 255.0});
   }
-  return rgb;
-}
-
-// Interpolate values at equal steps linearly at `part` (0 to 1).
-template <class Values>
-auto between(const Values& values, double part) {
-  const double place = std::clamp(part, 0.0, 1.0) * static_cast<double>(values.size() - 1);
-  const auto low = std::min(static_cast<std::size_t>(place), values.size() - 2);
-  auto result = values[low];
-  for (std::size_t i = 0; i < result.size(); ++i)
-    result[i] += (place - static_cast<double>(low)) * (values[low + 1][i] - values[low][i]);
-  return result;
-}
-
-ColourMap lab_map(const std::string& name, const std::vector<Lab>& control) {
-  ColourMap map{name, {}};
-  for (int i = 0; i < colours_a_map; ++i)
-    map.colours.push_back(srgb_of(between(control, static_cast<double>(i) / (colours_a_map - 1))));
-  return map;
+  return colours;
 }
 
 // Smallest round number (1, 1.2, 1.5, ... times a power of ten) not below `value`.
@@ -64,14 +29,6 @@ double rounded_up(double value) {
   for (const double factor : {1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 8.0, 10.0})
     if (factor * power * (1 + slack) >= value) return factor * power;
   return 10 * power;
-}
-
-template <class Arrays>
-const auto& required(const Arrays& arrays, const std::string& name) {
-  const auto found = arrays.find(name);
-  if (found == arrays.end())
-    throw FileError(fmt::format("the snapshot has no array {}; give one written by plica", name));
-  return found->second;
 }
 
 double size_of(const std::vector<double>& members) {
@@ -95,18 +52,18 @@ std::vector<double> region_numbers(const Frame& frame) {
 }  // namespace
 
 const std::vector<ColourMap>& colour_maps() {
-  // Cells at rest are light. Rejected: viridis, whose yellow end becomes muddy in shade.
+  // Cells at rest are light. Rejected: viridis, whose yellow end becomes muddy in shade. The first two are interpolated
+  // in CIE L*a*b* between (96, -3, 10), (78, -18, 2), (59, -20, -18), (40, -4, -33), (21, 8, -30), and between
+  // (25, 8, -38), (60, -10, -32), (95, 0, 3), (60, 22, 42), (25, 24, 32). The last are Okabe and Ito's colours for any
+  // kind of colour vision, light ones first.
   static const std::vector<ColourMap> maps = {
-      lab_map("still", {{96, -3, 10}, {78, -18, 2}, {59, -20, -18}, {40, -4, -33}, {21, 8, -30}}),
-      lab_map("about", {{25, 8, -38}, {60, -10, -32}, {95, 0, 3}, {60, 22, 42}, {25, 24, 32}}),
-      // Okabe and Ito's colours for any kind of colour vision, light ones first.
-      {"steps",
-       {{0.90, 0.90, 0.88},
-        {0.90, 0.62, 0},
-        {0.34, 0.71, 0.91},
-        {0, 0.62, 0.45},
-        {0.80, 0.47, 0.65},
-        {0.84, 0.37, 0}}}};
+      {"still", colours_in("f6f5e0 ebefdc e0ead7 d5e5d3 cae0ce bedaca b3d5c5 a8d0c1 9ccabd 92c4bb 88beb9 7eb8b7 74b2b5 "
+                           "69abb3 5da5b1 509faf 4299ad 3e92aa 3a8ba7 3584a3 307ea0 2b779d 26709a 1f6a97 186394 195d8d "
+                           "1a5686 1b5080 1b4a79 1b4372 1b3d6c 1a3765 19315f")},
+      {"about", colours_in("013b75 0e467f 195189 225c94 2a689e 3174a8 3980b3 408cbe 4798c8 63a3cd 7baed1 91b8d6 a6c3da "
+                           "bacede cddae2 e0e5e7 f3f0eb f0e2d5 ecd3c0 e8c5ab e2b796 dca982 d69b6e cf8e5a c78047 ba753e "
+                           "ae6a36 a15f2f 955427 88491f 7c3f18 703510 642a09")},
+      {"steps", colours_in("e6e6e0 e69e00 57b5e8 009e73 cc78a6 d65e00")}};
   return maps;
 }
 
@@ -159,8 +116,8 @@ std::vector<double> field_values(const Frame& frame, const ColourField& field) {
   // Snapshots of older versions lack this array; the values are unknown.
   if ((field.array == "self_intersecting" || field.array == "strength") && !frame.element_scalars.contains(field.array))
     return std::vector<double>(frame.elements.size(), 0.0);
-  if (!field.on_nodes) return required(frame.element_scalars, field.array);
-  const Vectors& vectors = required(frame.node_vectors, field.array);
+  if (!field.on_nodes) return values_in(frame.element_scalars, field.array);
+  const Vectors& vectors = values_in(frame.node_vectors, field.array);
   std::vector<double> lengths;
   lengths.reserve(vectors.size());
   for (const Vec3& vector : vectors) lengths.push_back(vector.norm());
@@ -202,7 +159,13 @@ ColourRange colour_range(const ColourField& field, double smallest, double large
 }
 
 Rgb colour_of(const ColourMap& map, const ColourRange& range, double value) {
-  return between(map.colours, (value - range.low) / (range.high - range.low));
+  const std::vector<Rgb>& colours = map.colours;
+  const double part = std::clamp((value - range.low) / (range.high - range.low), 0.0, 1.0);
+  const double place = part * static_cast<double>(colours.size() - 1);
+  const auto low = std::min(static_cast<std::size_t>(place), colours.size() - 2);
+  Rgb colour = colours[low];
+  for (int i = 0; i < 3; ++i) colour[i] += (place - static_cast<double>(low)) * (colours[low + 1][i] - colours[low][i]);
+  return colour;
 }
 
 const std::vector<View>& views() {

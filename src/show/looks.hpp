@@ -2,12 +2,19 @@
 // page receives these definitions, so that they exist once.
 #pragma once
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/errors.hpp"
+#include "core/names.hpp"
 #include "scenario/embryo_axes.hpp"
+#include "scenario/suggest.hpp"
 #include "tissue/files/frame_file.hpp"
 
 namespace plica {
@@ -60,6 +67,15 @@ std::vector<std::string> regions_of(const Frame& frame);
 /// contains it; 0: none.
 std::vector<std::string> coloured_regions(const Frame& frame);
 
+/// Array of a snapshot by name. Throws FileError if it is missing.
+template <class Arrays>
+const auto& values_in(const Arrays& arrays, const std::string& name) {
+  const auto found = arrays.find(name);
+  if (found == arrays.end())
+    throw FileError(fmt::format("the snapshot has no array {}; give one written by plica", name));
+  return found->second;
+}
+
 /// Values of a field in a snapshot: one per node if `on_nodes`, else one per element. Throws FileError for a missing
 /// array.
 std::vector<double> field_values(const Frame& frame, const ColourField& field);
@@ -109,5 +125,17 @@ EmbryoAxes picture_letters(const EmbryoAxes& axes);
 
 /// Cross-section at another position along the embryo, named "x = 125 µm".
 View cross_section_at(double x_um, const EmbryoAxes& axes = anatomical_axes());
+
+/// Find the view or quantity of a name. Throws UsageError that lists all names.
+template <class Thing>
+const Thing& named(const char* option, const std::string& name, const std::vector<Thing>& things) {
+  const auto found = std::ranges::find(things, name, &Thing::name);
+  if (found != things.end()) return *found;
+  const std::vector<std::string> names = names_of(things);
+  const auto nearest = nearest_name(name, names);
+  throw UsageError(fmt::format("{} {}: unknown name; {}available: {}", option, name,
+                               nearest ? fmt::format("use {} (nearest match); ", *nearest) : "",
+                               fmt::join(names, ", ")));
+}
 
 }  // namespace plica

@@ -1,7 +1,7 @@
 // Pictures of snapshots: description as plain data, and a painter that makes PNG files of it.
 //
 // The painter uses VTK off screen. Debian's VTK draws through X and ends the process if that fails, so a child process
-// draws, and without a working display a virtual X server is started (display.hpp).
+// draws, and without a working display a virtual X server is started.
 #pragma once
 
 #include <array>
@@ -20,7 +20,6 @@ namespace plica {
 struct PictureColumn {
   std::string heading;  // "5 min"
   Frame frame;
-  Vectors dots = {};  // marked points, um
 };
 
 /// Row of a picture: one view.

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/errors.hpp"
-#include "show/picture_scene.hpp"
 
 namespace plica {
 namespace {
@@ -189,8 +188,8 @@ class Composer {
     if (picture_.rows.size() > 1) {
       const std::vector<std::string> lines = heading_lines(picture_.rows[row].view.heading(), broken_names_);
       for (std::size_t i = 0; i < lines.size(); ++i)
-        layout_.labels.push_back({lines[i], (0.3 + line_em * (static_cast<double>(i) + 0.5)) * em_, middle, em_,
-                                  Align::centre, false, true});
+        layout_.labels.push_back(
+            {lines[i], (0.3 + line_em * (static_cast<double>(i) + 0.5)) * em_, middle, em_, true, false, true});
     }
     add_marks(row, middle);
   }
@@ -209,7 +208,7 @@ class Composer {
       if (picture_.shell) reach_um += 5;
       const double reach = reach_um / layout_.um_per_px + 0.75 * em_;
       layout_.labels.push_back({mark.text, box.left + box.width / 2 + reach * mark.direction[0],
-                                middle + reach * mark.direction[1], em_, Align::centre, true});
+                                middle + reach * mark.direction[1], em_, true, true});
     }
   }
 
@@ -220,7 +219,7 @@ class Composer {
       for (std::size_t i = 0; i < lines.size(); ++i)
         layout_.labels.push_back({lines[i], box.left + box.width / 2,
                                   rows_top + (0.95 + line_em * static_cast<double>(lines.size() - 1 - i)) * em_,
-                                  1.05 * em_, Align::centre, true});
+                                  1.05 * em_, true, true});
     }
   }
 
@@ -235,17 +234,19 @@ class Composer {
     for (std::size_t i = 0; i < legend_title_.size(); ++i)
       layout_.labels.push_back({legend_title_[i], left,
                                 bar_bottom + (bar + title - line_em * (static_cast<double>(i) + 0.5)) * em_, em_,
-                                Align::left});
+                                false});
     if (steps)
       add_steps({left, bar_bottom, bar_em * em_, bar * em_});
     else
       add_bar({left, bar_bottom, bar_em * em_, bar * em_});
   }
 
+  void add_frame(const Box& box) {
+    layout_.rectangles.push_back({{box.left - 1, box.bottom - 1, box.width + 2, box.height + 2}, ink});
+  }
+
   void add_bar(const Box& box) {
-    constexpr double frame_px = 1;
-    layout_.rectangles.push_back(
-        {{box.left - frame_px, box.bottom - frame_px, box.width + 2 * frame_px, box.height + 2 * frame_px}, ink});
+    add_frame(box);
     const ColourRange& range = picture_.range;
     const int pieces = static_cast<int>(std::ceil(box.height));
     for (int i = 0; i < pieces; ++i) {
@@ -256,7 +257,7 @@ class Composer {
     for (const double tick : scale_ticks(range, static_cast<int>(std::clamp(box.height / em_ / 1.5, 2.0, 8.0)))) {
       const double y = box.bottom + box.height * (tick - range.low) / (range.high - range.low);
       layout_.rectangles.push_back({{box.left + box.width, y - 0.5, 0.25 * em_, 1}, ink});
-      layout_.labels.push_back({number_text(tick), box.left + box.width + gap_em * em_, y, em_, Align::left});
+      layout_.labels.push_back({number_text(tick), box.left + box.width + gap_em * em_, y, em_, false});
     }
   }
 
@@ -266,10 +267,10 @@ class Composer {
     for (std::size_t value = 0; value < picture_.step_names.size(); ++value) {
       const auto place = static_cast<double>(value);
       const Box step = {box.left, box.bottom + place * height, box.width, 0.85 * height};
-      layout_.rectangles.push_back({{step.left - 1, step.bottom - 1, step.width + 2, step.height + 2}, ink});
+      add_frame(step);
       layout_.rectangles.push_back({step, colour_of(picture_.field.map(), picture_.range, place)});
-      layout_.labels.push_back({picture_.step_names[value], box.left + box.width + gap_em * em_,
-                                step.bottom + step.height / 2, em_, Align::left});
+      layout_.labels.push_back(
+          {picture_.step_names[value], box.left + box.width + gap_em * em_, step.bottom + step.height / 2, em_, false});
     }
   }
 
@@ -281,7 +282,7 @@ class Composer {
     layout_.rectangles.push_back({{left, y - thickness / 2, length, thickness}, ink});
     const std::string text = number_text(length_um) + " \u00b5m";
     double x = left + length + gap_em * em_;
-    layout_.labels.push_back({text, x, y, em_, Align::left});
+    layout_.labels.push_back({text, x, y, em_, false});
     x += (width_em(text) + 2) * em_;
     const bool cut =
         std::ranges::any_of(picture_.rows, [](const PictureRow& row) { return row.view.cut_axis.has_value(); });
@@ -292,7 +293,7 @@ class Composer {
     while (!notes.empty()) {
       const std::string words = fmt::format("{}", fmt::join(notes, "; "));
       if (x + width_em(words) * em_ <= layout_.width_px) {
-        layout_.labels.push_back({words, x, y, em_, Align::left});
+        layout_.labels.push_back({words, x, y, em_, false});
         break;
       }
       notes.erase(notes.begin());

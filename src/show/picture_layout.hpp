@@ -1,4 +1,4 @@
-// Layout of a picture, in pixels from its left and lower edge.
+// Layout of a picture, in pixels from its left and lower edge; and the contents of its panels as triangles and lines.
 #pragma once
 
 #include <array>
@@ -19,14 +19,12 @@ struct Panel {
   std::size_t column = 0, row = 0;
 };
 
-enum class Align { left, centre, right };
-
-/// Line of text; (`x`, `y`): middle of its height, and of its width depending on `align`.
+/// Line of text; (`x`, `y`): middle of its height, and its left end or the middle of its width.
 struct Label {
   std::string text;
   double x = 0, y = 0;
   double size_px = 12;
-  Align align = Align::centre;
+  bool is_centred = true;
   bool bold = false;
   bool upwards = false;  // rotated by 90 degrees
 };
@@ -56,5 +54,28 @@ double round_length(double value);
 
 /// Break a text between words into lines of at most `most` letters; longer words are kept.
 std::vector<std::string> wrapped(const std::string& text, std::size_t most);
+
+using Segment = std::array<Vec3, 2>;
+
+/// Content of a panel, in coordinates of the embryo; triangles are three consecutive corners, symmetric for a symmetric
+/// embryo.
+struct Scene {
+  Vectors corners, normals;       // um; triangles of a facet share a normal
+  std::vector<double> values;     // of the field; corners
+  bool lit = true;                // shading; without it, colours equal the legend
+  std::vector<Segment> outlines;  // of cells
+  std::vector<Segment> rest;      // reference outline, in sections
+  Vectors shell;                  // triangles of a band around the embryo
+};
+
+/// Scene of the boundary surface of a snapshot or, for a section view, the section alone. `band_um`: thickness of the
+/// shell. Throws FileError for a missing field.
+Scene make_scene(const Picture& picture, const PictureColumn& column, const View& view, double band_um);
+
+/// Unit vectors of a view, rightward and upward in the picture.
+struct Screenwise {
+  Vec3 right, up;
+};
+Screenwise screenwise(const View& view);
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-#include "show/picture_scene.hpp"
+#include "show/picture_layout.hpp"
 
 #include <cmath>
 #include <map>
@@ -10,22 +10,25 @@
 namespace plica {
 namespace {
 
-Vec3 place_of(const Frame& frame, const CutPolygon::Corner& corner) {
-  return (1 - corner.part) * frame.positions[corner.first.index()] +
-         corner.part * frame.positions[corner.second.index()];
-}
-
-// Triangulate a polygon about its centre, which preserves symmetry.
-void add_fan(const Vectors& polygon, const std::vector<double>& values, const Vec3& normal, Scene& scene) {
+// Triangulate a polygon about its centre, which preserves symmetry. Without a normal, it is that of a facet.
+void add_polygon(const Frame& frame, const ColourField& field, const std::vector<double>& values,
+                 const CutPolygon& polygon, const std::optional<Vec3>& normal, Scene& scene) {
+  const auto count = static_cast<double>(polygon.corners.size());
+  Vectors places;
+  std::vector<double> at_places;
   Vec3 middle = Vec3::Zero();
   double mean = 0;
-  const auto count = static_cast<double>(polygon.size());
-  for (std::size_t i = 0; i < polygon.size(); ++i) middle += polygon[i] / count, mean += values[i] / count;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const std::size_t next = (i + 1) % polygon.size();
-    scene.corners.insert(scene.corners.end(), {polygon[i], polygon[next], middle});
-    scene.values.insert(scene.values.end(), {values[i], values[next], mean});
-    scene.normals.insert(scene.normals.end(), 3, normal);
+  for (const CutPolygon::Corner& corner : polygon.corners) {
+    places.push_back(corner.of(frame.positions));
+    at_places.push_back(field.on_nodes ? corner.of(values) : values[polygon.element]);
+    middle += places.back() / count, mean += at_places.back() / count;
+  }
+  const Vec3 seen = normal ? *normal : (places[2] - places[0]).cross(places[3] - places[1]).normalized();
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::size_t next = (i + 1) % places.size();
+    scene.corners.insert(scene.corners.end(), {places[i], places[next], middle});
+    scene.values.insert(scene.values.end(), {at_places[i], at_places[next], mean});
+    scene.normals.insert(scene.normals.end(), 3, seen);
   }
 }
 
@@ -33,77 +36,38 @@ void add_surface(const Frame& frame, const ColourField& field, Scene& scene) {
   const std::vector<double> values = field_values(frame, field);
   const BoundarySurface boundary = boundary_surface_of(frame);
   for (const BoundaryFacet& facet : boundary.facets) {
-    Vectors corners;
-    std::vector<double> at_corners;
-    for (const NodeId node : facet.nodes) {
-      corners.push_back(frame.positions[node.index()]);
-      at_corners.push_back(field.on_nodes ? values[node.index()] : values[facet.element]);
-    }
-    const Vec3 normal = (corners[2] - corners[0]).cross(corners[3] - corners[1]).normalized();
-    add_fan(corners, at_corners, normal, scene);
+    CutPolygon polygon{facet.element, {}};
+    for (const NodeId node : facet.nodes) polygon.corners.push_back({node, node, 0});
+    add_polygon(frame, field, values, polygon, {}, scene);
   }
   for (const auto& [first, second] : boundary.outlines)
     scene.outlines.push_back({frame.positions[first.index()], frame.positions[second.index()]});
 }
 
-// Edges of the polygons, except those between two elements of one cell.
-void add_cut_outlines(const Frame& frame, const std::vector<CutPolygon>& polygons, Scene& scene) {
-  using CutEdge = std::pair<NodeId, NodeId>;  // mesh edge on which a corner lies
-  struct Side {
-    Segment segment;
-    double cell = 0;
-    int times = 0;  // occurrences in this cell
-  };
-  std::map<std::pair<CutEdge, CutEdge>, std::vector<Side>> sides;
-  const auto edge_of = [](const CutPolygon::Corner& corner) { return std::minmax(corner.first, corner.second); };
-  const std::vector<double>& cells = frame.element_scalars.at("cell_id");
-  for (const CutPolygon& polygon : polygons)
-    for (std::size_t i = 0; i < polygon.corners.size(); ++i) {
-      const auto &first = polygon.corners[i], &second = polygon.corners[(i + 1) % polygon.corners.size()];
-      const CutEdge a = edge_of(first), b = edge_of(second);
-      std::vector<Side>& here = sides[std::minmax(a, b)];
-      const double cell = cells[polygon.element];
-      if (!here.empty() && here.back().cell == cell)
-        ++here.back().times;
-      else
-        here.push_back({{place_of(frame, first), place_of(frame, second)}, cell, 1});
-    }
-  for (const auto& [edges, here] : sides)
-    if (here.size() > 1 || here.front().times == 1) scene.outlines.push_back(here.front().segment);
-}
-
+// Section of the cells, and its outlines: edges of polygons, except those between two elements of one cell.
 void add_section(const Frame& frame, const ColourField& field, const View& view, Scene& scene) {
   const std::vector<double> values = field_values(frame, field);
-  const std::vector<CutPolygon> polygons = cut_by_plane(frame, *view.cut_axis, view.cut_um);
-  for (const CutPolygon& polygon : polygons) {
-    Vectors corners;
-    std::vector<double> at_corners;
-    for (const CutPolygon::Corner& corner : polygon.corners) {
-      corners.push_back(place_of(frame, corner));
-      at_corners.push_back(field.on_nodes ? (1 - corner.part) * values[corner.first.index()] +
-                                                corner.part * values[corner.second.index()]
-                                          : values[polygon.element]);
+  const std::vector<double>& cells = values_in(frame.element_scalars, "cell_id");
+  using CutEdge = std::pair<NodeId, NodeId>;  // mesh edge on which a corner lies
+  const auto edge_of = [](const CutPolygon::Corner& corner) {
+    return CutEdge(std::minmax(corner.first, corner.second));
+  };
+  struct Side {
+    Segment segment;
+    std::vector<double> cells;
+  };
+  std::map<std::pair<CutEdge, CutEdge>, Side> sides;
+  for (const CutPolygon& polygon : cut_by_plane(frame, *view.cut_axis, view.cut_um)) {
+    add_polygon(frame, field, values, polygon, -view.sight.normalized(), scene);
+    for (std::size_t i = 0; i < polygon.corners.size(); ++i) {
+      const auto &first = polygon.corners[i], &second = polygon.corners[(i + 1) % polygon.corners.size()];
+      Side& side = sides[std::minmax(edge_of(first), edge_of(second))];
+      if (side.cells.empty()) side.segment = {first.of(frame.positions), second.of(frame.positions)};
+      side.cells.push_back(cells[polygon.element]);
     }
-    add_fan(corners, at_corners, -view.sight.normalized(), scene);
   }
-  add_cut_outlines(frame, polygons, scene);
-}
-
-// Section of the boundary surface by the plane of a view.
-std::vector<Segment> cut_outer_side(const Frame& frame, int axis, double at_um) {
-  std::vector<Segment> segments;
-  for (const BoundaryFacet& facet : boundary_surface_of(frame).facets) {
-    if (facet.face != apical_face) continue;
-    Vectors crossings;
-    for (int i = 0; i < 4; ++i) {
-      const Vec3 &from = frame.positions[facet.nodes[i].index()],
-                 &to = frame.positions[facet.nodes[(i + 1) % 4].index()];
-      const double before = from[axis] - at_um, after = to[axis] - at_um;
-      if ((before < 0) != (after < 0)) crossings.push_back(from + before / (before - after) * (to - from));
-    }
-    if (crossings.size() == 2) segments.push_back({crossings[0], crossings[1]});
-  }
-  return segments;
+  for (const auto& [edges, side] : sides)
+    if (side.cells.size() != 2 || side.cells[0] != side.cells[1]) scene.outlines.push_back(side.segment);
 }
 
 // Band along the outline of the shell in a view: two half circles about the projected ends of its axis.
@@ -151,7 +115,9 @@ Scene make_scene(const Picture& picture, const PictureColumn& column, const View
   if (view.cut_axis) {
     scene.lit = false;
     add_section(column.frame, picture.field, view, scene);
-    if (picture.rest && !picture.shell) scene.rest = cut_outer_side(*picture.rest, *view.cut_axis, view.cut_um);
+    if (picture.rest && !picture.shell)
+      for (const CutPolygon& cut : cut_apical_surface(*picture.rest, *view.cut_axis, view.cut_um))
+        scene.rest.push_back({cut.corners[0].of(picture.rest->positions), cut.corners[1].of(picture.rest->positions)});
   } else {
     add_surface(column.frame, picture.field, scene);
   }

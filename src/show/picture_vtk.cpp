@@ -1,4 +1,9 @@
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <vtkActor.h>
 #include <vtkActor2D.h>
 #include <vtkAutoInit.h>
@@ -26,15 +31,16 @@
 #include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
+#include <cstdio>
 #include <cstdlib>
 
 #include "core/child_process.hpp"
 #include "core/errors.hpp"
 #include "core/one_thread_vtk.hpp"
-#include "show/display.hpp"
 #include "show/picture_layout.hpp"
-#include "show/picture_scene.hpp"
 
 // VTK requires explicit initialization of renderer and fonts.
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
@@ -54,24 +60,19 @@ constexpr double descender_em = 0.1;
 constexpr double band_em = 0.15;              // thickness of the shell, in letter heights
 constexpr double most_pixels_averaged = 5e6;  // larger pictures are not supersampled
 
-vtkSmartPointer<vtkPolyData> poly_data(const Vectors& points, int points_a_cell, bool lines, const Vec3& move) {
+// Polygons of equally many corners each, or lines of 2.
+vtkSmartPointer<vtkPolyData> poly_data(const Vectors& points, int points_a_cell) {
   vtkNew<vtkPoints> vtk_points;
   vtk_points->SetDataTypeToDouble();
   vtkNew<vtkCellArray> cells;
-  for (const Vec3& point : points) {
-    const Vec3 moved = point + move;
-    vtk_points->InsertNextPoint(moved.data());
-  }
+  for (const Vec3& point : points) vtk_points->InsertNextPoint(point.data());
   for (vtkIdType first = 0; first < vtk_points->GetNumberOfPoints(); first += points_a_cell) {
     cells->InsertNextCell(points_a_cell);
     for (int i = 0; i < points_a_cell; ++i) cells->InsertCellPoint(first + i);
   }
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->SetPoints(vtk_points);
-  if (lines)
-    data->SetLines(cells);
-  else
-    data->SetPolys(cells);
+  points_a_cell == 2 ? data->SetLines(cells) : data->SetPolys(cells);
   return data;
 }
 
@@ -88,7 +89,7 @@ vtkSmartPointer<vtkLookupTable> colour_table(const Picture& picture) {
 }
 
 void add_facets(const Scene& scene, vtkLookupTable& table, vtkRenderer& renderer) {
-  const vtkSmartPointer<vtkPolyData> data = poly_data(scene.corners, 3, false, Vec3::Zero());
+  const vtkSmartPointer<vtkPolyData> data = poly_data(scene.corners, 3);
   vtkNew<vtkDoubleArray> values;
   values->SetName("value");
   for (const double value : scene.values) values->InsertNextValue(value);
@@ -128,8 +129,8 @@ void add_plain(vtkPolyData& data, const Rgb& colour, double opacity, double line
 void add_lines(const std::vector<Segment>& segments, const Vec3& move, const Rgb& colour, double line_px,
                vtkRenderer& renderer) {
   Vectors ends;
-  for (const Segment& segment : segments) ends.insert(ends.end(), segment.begin(), segment.end());
-  add_plain(*poly_data(ends, 2, true, move), colour, 1, line_px, renderer);
+  for (const auto& [from, to] : segments) ends.insert(ends.end(), {from + move, to + move});
+  add_plain(*poly_data(ends, 2), colour, 1, line_px, renderer);
 }
 
 // Thinner lines for small cells.
@@ -139,21 +140,6 @@ double outline_px(const Scene& scene, const Layout& layout) {
   const double mean_px =
       length_um / static_cast<double>(std::max<std::size_t>(1, scene.outlines.size())) / layout.um_per_px;
   return std::min(0.06 * layout.font_px, 0.08 * mean_px);
-}
-
-// Discs facing the viewer.
-void add_dots(const Vectors& places, const View& view, double radius_um, vtkRenderer& renderer) {
-  constexpr int corners = 24;
-  const auto [right, up] = screenwise(view);
-  // In front of the facets that meet there.
-  const Vec3 move = -3 * radius_um * view.sight.normalized();
-  Vectors points;
-  for (const Vec3& place : places)
-    for (int i = 0; i < corners; ++i) {
-      const double angle = 2 * EIGEN_PI * i / corners;
-      points.emplace_back(place + radius_um * (std::cos(angle) * right + std::sin(angle) * up));
-    }
-  add_plain(*poly_data(points, corners, false, move), {0.75, 0.1, 0.1}, 1, 1, renderer);
 }
 
 /// Render window with its content, supersampled by `scale`.
@@ -203,8 +189,7 @@ class Stage {
     add_lines(scene.rest, behind, grey, 0.09 * layout_.font_px * scale_, *renderer);
     add_facets(scene, *table_, *renderer);
     add_lines(scene.outlines, -behind, ink, outline_px(scene, layout_) * scale_, *renderer);
-    add_plain(*poly_data(scene.shell, 3, false, Vec3::Zero()), shell_grey, 0.6, 1, *renderer);
-    add_dots(picture_.columns[panel.column].dots, view, 0.3 * layout_.font_px * layout_.um_per_px, *renderer);
+    add_plain(*poly_data(scene.shell, 3), shell_grey, 0.6, 1, *renderer);
     vtkCamera& camera = *renderer->GetActiveCamera();
     camera.ParallelProjectionOn();
     camera.SetFocalPoint(0, 0, 0);
@@ -227,7 +212,7 @@ class Stage {
       colours->InsertNextTuple3(std::lround(255 * colour[0]), std::lround(255 * colour[1]),
                                 std::lround(255 * colour[2]));
     }
-    const vtkSmartPointer<vtkPolyData> data = poly_data(corners, 4, false, Vec3::Zero());
+    const vtkSmartPointer<vtkPolyData> data = poly_data(corners, 4);
     data->GetCellData()->SetScalars(colours);
     vtkNew<vtkPolyDataMapper2D> mapper;
     mapper->SetInputData(data);
@@ -244,9 +229,7 @@ class Stage {
     look.SetFontSize(static_cast<int>(std::lround(label.size_px * scale_)));
     look.SetFontFamilyToArial();
     look.SetBold(label.bold);
-    look.SetJustification(label.align == Align::left     ? VTK_TEXT_LEFT
-                          : label.align == Align::centre ? VTK_TEXT_CENTERED
-                                                         : VTK_TEXT_RIGHT);
+    look.SetJustification(label.is_centred ? VTK_TEXT_CENTERED : VTK_TEXT_LEFT);
     look.SetVerticalJustificationToCentered();
     if (label.upwards) look.SetOrientation(90);
     // VTK includes descenders in the height that it centres.
@@ -307,13 +290,82 @@ std::string draw(const Picture& picture, const Layout& layout, const std::vector
   return image == nullptr ? "" : png_bytes(*averaged(*image, scale));
 }
 
+[[noreturn]] void throw_no_screen(const std::string& why) {
+  const char* named = std::getenv("DISPLAY");
+  throw FileError(fmt::format("pictures need an X display: {}, and {}; apt-get install xvfb, or set DISPLAY",
+                              named == nullptr || *named == '\0'
+                                  ? std::string("DISPLAY is not set")
+                                  : fmt::format("DISPLAY ({}) does not allow drawing", named),
+                              why));
+}
+
+// Become a virtual X server, in the child process; it writes the number of its display to the socket.
+int become_server(int end, int messages) {
+  ::setpgid(0, 0);                     // Ctrl-C must not reach the server
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // lets it remove its socket and lock
+  for (const int signal : {SIGINT, SIGTERM, SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_DFL);
+  const int nothing = ::open("/dev/null", O_RDWR);
+  const std::string number = std::to_string(::dup(end));  // without O_CLOEXEC
+  // -noreset: otherwise the server restarts when a window closes, and the next window may come too early.
+  return become({"Xvfb", "-displayfd", number, "-screen", "0", "64x64x24", "-noreset", "-nolisten", "tcp"}, nothing,
+                nothing, messages);
+}
+
+// Read the line that the server writes once it is ready; empty if it ends or takes too long.
+std::string read_number(int end) {
+  constexpr int most_ms_to_start = 30'000;
+  std::string line;
+  for (char letter = 0; letter != '\n';) {
+    pollfd watched{end, POLLIN, 0};
+    const int ready = ::poll(&watched, 1, most_ms_to_start);
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready <= 0 || ::read(end, &letter, 1) != 1) return "";
+    if (letter != '\n') line += letter;
+  }
+  return line;
+}
+
+// Last line of the messages of Xvfb.
+std::string last_line(std::FILE* messages) {
+  std::string text(1 << 14, '\0');
+  std::rewind(messages);
+  text.resize(std::fread(text.data(), 1, text.size(), messages));
+  text.erase(text.find_last_not_of(" \n") + 1);
+  return text.substr(text.rfind('\n') + 1);
+}
+
 }  // namespace
 
+// X display: that of DISPLAY, or an own virtual X server (Xvfb), which ends with this object or, however it ends, this
+// process.
 struct Painter::Screen {
-  Display display;
+  std::string display;
+  std::unique_ptr<ChildProcess> server;
+
+  void start_server() {
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> messages(std::tmpfile(), std::fclose);
+    if (messages == nullptr) throw_no_screen("Xvfb cannot be started");
+    try {
+      server = std::make_unique<ChildProcess>([&](int end) { return become_server(end, ::fileno(messages.get())); });
+    } catch (const FileError&) {
+      throw_no_screen("a process cannot be started");
+    }
+    const std::string number = read_number(server->end());
+    display = ":" + number;
+    if (!number.empty()) return;
+    server->send(SIGTERM);
+    const int status = server->wait();
+    server.reset();
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 127) throw_no_screen("Xvfb is not installed");
+    const std::string said = last_line(messages.get());
+    throw_no_screen("Xvfb did not start" + (said.empty() ? said : " (" + said + ")"));
+  }
 };
 
-Painter::Painter() : screen_(std::make_unique<Screen>()) {}
+Painter::Painter() : screen_(std::make_unique<Screen>()) {
+  if (const char* named = std::getenv("DISPLAY")) screen_->display = named;
+  if (screen_->display.empty()) screen_->start_server();
+}
 Painter::~Painter() = default;
 
 std::string Painter::png(const Picture& picture) {
@@ -322,14 +374,13 @@ std::string Painter::png(const Picture& picture) {
   std::vector<Scene> scenes;
   for (const Panel& panel : layout.panels)
     scenes.push_back(make_scene(picture, picture.columns[panel.column], picture.rows[panel.row].view, band_um));
-  Display& display = screen_->display;
   while (true) {
-    const auto bytes = output_of_child("drawing a picture on display " + display.name(),
-                                       [&] { return draw(picture, layout, scenes, display.name()); });
+    const auto bytes = output_of_child("drawing a picture on display " + screen_->display,
+                                       [&] { return draw(picture, layout, scenes, screen_->display); });
     if (bytes && !bytes->empty()) return *bytes;
-    if (display.is_ours())
+    if (screen_->server != nullptr)
       throw FileError("pictures cannot be drawn (OpenGL failed in VTK); apt-get install libgl1-mesa-dri");
-    display.start_own();  // the display responds but cannot draw
+    screen_->start_server();  // that of DISPLAY does not respond, or cannot draw
   }
 }
 

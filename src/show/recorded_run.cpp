@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "core/version.hpp"
 #include "record/archive.hpp"
 #include "record/results.hpp"
@@ -15,38 +16,39 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Protect a scenario file in DIR with a name that plica writes.
-void refuse_to_replace_scenario(const std::string& scenario_file, const fs::path& out) {
+// Protect the scenario's file, a study, and reference runs of monitors.
+void refuse_to_replace_input(const std::string& scenario_file, const std::vector<Monitor>& monitors,
+                             const fs::path& out) {
   if (out.empty()) throw UsageError("--out: empty; give the directory for the results");
   std::error_code error;
   for (const char* name : {"scenario.toml", "scenario.input.toml"})
     if (fs::equivalent(scenario_file, out / name, error))
       throw UsageError(scenario_file + ": would be replaced by the results; give another --out, or move the scenario");
-}
-
-// Protect the directory of a study.
-void refuse_to_replace_study(const fs::path& out) {
-  std::error_code error;
   if (fs::exists(out / "study.json", error)) throw UsageError(out.string() + ": contains a study; give another --out");
-}
-
-// Protect the reference run of a monitor.
-void refuse_to_replace_reference(const std::vector<Monitor>& monitors, const fs::path& out) {
-  std::error_code error;
   for (const Monitor& monitor : monitors)
     if (monitor.reference_run && fs::equivalent(monitor.reference_run->directory(), out, error))
       throw UsageError(
           fmt::format("--out {} is the reference of monitor \"{}\"; give another --out", out.string(), monitor.name));
 }
 
+// Writer of report.html at the end of a run.
+class ReportWriter final : public RecordListener {
+ public:
+  explicit ReportWriter(fs::path directory) : directory_(std::move(directory)) {}
+  void add_frame(const Frame& frame, double time_s) override { frames_.add(frame, time_s); }
+  void end() override { write_file(directory_ / "report.html", report_page({make_report_run(directory_, frames_)})); }
+
+ private:
+  fs::path directory_;
+  ReportFrames frames_{most_frame_bytes};
+};
+
 }  // namespace
 
 RecordedRun::RecordedRun(fs::path out, const Scenario& scenario, const ScenarioSource& source, Simulation& simulation,
                          Start start, Recorder::Clock::time_point since)
-    : out_(std::move(out)), input_toml_(source.text), simulation_(simulation), report_(out_) {
-  refuse_to_replace_scenario(source.file, out_);
-  refuse_to_replace_study(out_);
-  refuse_to_replace_reference(simulation.observer().monitors(), out_);
+    : out_(std::move(out)), input_toml_(source.text), simulation_(simulation) {
+  refuse_to_replace_input(source.file, simulation.observer().monitors(), out_);
   if (simulation.divisions() > 0)
     throw UsageError("cells have already divided; start a record before the first division");
   if (start == Start::resumed && simulation.steps() > 0)
@@ -61,7 +63,9 @@ RecordedRun::RecordedRun(fs::path out, const Scenario& scenario, const ScenarioS
     lock_ = std::make_unique<DirectoryLock>(out_);  // it may have been created just now
   }
   recorder_ = std::make_unique<Recorder>(out_, scenario, simulation, since);
-  if (can_report()) recorder_->listen(report_);
+  if (!can_report()) return;
+  report_ = std::make_unique<ReportWriter>(out_);
+  recorder_->listen(*report_);
 }
 
 RecordedRun::~RecordedRun() {

@@ -12,7 +12,6 @@
 #include "core/files.hpp"
 #include "record/recorder.hpp"
 #include "scenario/load.hpp"
-#include "show/report_writer.hpp"
 
 namespace plica {
 
@@ -64,7 +63,7 @@ class RecordedRun {
   std::vector<std::string> notes_;
   std::unique_ptr<DirectoryLock> lock_;
   std::optional<Checkpoint> checkpoint_;
-  ReportWriter report_;
+  std::unique_ptr<RecordListener> report_;
   std::unique_ptr<Recorder> recorder_;
 };
 

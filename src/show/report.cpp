@@ -7,17 +7,63 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
+#include "core/base64.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/markup.hpp"
 #include "core/version.hpp"
+#include "measure/reference_run.hpp"
+#include "record/deflate.hpp"
+#include "record/results.hpp"
+#include "record/run_scenario.hpp"
 #include "scenario/differences.hpp"
-#include "show/looks.hpp"
-#include "show/report_page.hpp"
-#include "show/report_run.hpp"
+#include "scenario/embryo_axes.hpp"
 
 namespace plica {
+namespace fs = std::filesystem;
 namespace {
 
 using nlohmann::ordered_json;
+
+constexpr std::string_view title_place = "<!--plica:title-->", data_place = "<!--plica:data-->";
+
+// Convert to JSON for a script element, without "</script>" and "<!--". Invalid UTF-8 becomes U+FFFD.
+std::string in_script(const ordered_json& json) {
+  const std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  std::string result;
+  result.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<')
+      result += "\\u003c";
+    else
+      result += c;
+  }
+  return result;
+}
+
+std::string replaced(std::string_view text, std::string_view place, const std::string& by) {
+  const std::size_t at = text.find(place);
+  if (at == std::string_view::npos) throw std::logic_error("the page has no place for its data");
+  return fmt::format("{}{}{}", text.substr(0, at), by, text.substr(at + place.size()));
+}
+
+std::string text_of(const fs::path& file) {
+  std::error_code error;
+  return fs::exists(file, error) ? read_file(file) : "";
+}
+
+ordered_json shell_json(const std::optional<Scenario>& scenario, const Vectors& rest_positions) {
+  const std::optional<Capsule> shell = scenario ? shell_of_run(*scenario, rest_positions) : std::nullopt;
+  if (!shell) return nullptr;
+  return {{"half_axis_um", shell->half_axis_um}, {"radius_um", shell->radius_um}};
+}
+
+// Word for `furrow_depth_um`: of a furrow, of the fold of an open sheet; empty for other tissues.
+const char* depth_word(const EmbryoAxes& axes, const std::vector<View>& views) {
+  return have_furrow(axes) ? "furrow" : views.front().name == "apical" ? "fold" : "";
+}
 
 std::string hex(const Rgb& colour) {
   std::string text = "#";
@@ -111,10 +157,10 @@ ordered_json varied_json(const std::vector<ReportRun>& runs) {
 }
 
 // Prefix equal directory names by their parents: "young-500/run" and "young-1000/run".
-void make_names_unique(const std::vector<std::filesystem::path>& directories, std::vector<ReportRun>& runs) {
-  std::vector<std::filesystem::path> above;
+void make_names_unique(const std::vector<fs::path>& directories, std::vector<ReportRun>& runs) {
+  std::vector<fs::path> above;
   for (const auto& directory : directories) {
-    const std::filesystem::path whole = std::filesystem::absolute(directory).lexically_normal();
+    const fs::path whole = fs::absolute(directory).lexically_normal();
     above.push_back((whole.has_filename() ? whole : whole.parent_path()).parent_path());
   }
   for (bool any = true; any;) {
@@ -134,9 +180,77 @@ void make_names_unique(const std::vector<std::filesystem::path>& directories, st
 
 }  // namespace
 
+#ifdef PLICA_REPORT_TEMPLATE
+// Included by the assembler, since the compiler takes seconds for literals of this size.
+#define PLICA_TEMPLATE(name, file)                                                     \
+  __asm__(".pushsection .rodata\nplica_" #name ":\n.incbin \"" file "\"\nplica_" #name \
+          "_end:\n.byte 0\n.popsection\n");                                            \
+  extern "C" const char plica_##name[], plica_##name##_end[];                          \
+  std::string_view name() { return {plica_##name, plica_##name##_end}; }
+#else
+#define PLICA_TEMPLATE(name, file) \
+  std::string_view name() { return {}; }
+#endif
+PLICA_TEMPLATE(report_template, PLICA_REPORT_TEMPLATE)
+PLICA_TEMPLATE(study_template, PLICA_STUDY_TEMPLATE)
+
+std::string filled_page(std::string_view page, const std::string& title, const ordered_json& data,
+                        const std::vector<PageBytes>& packed) {
+  if (page.empty()) throw FileError("reports are not available (built with PLICA_WITH_VIEWER=OFF)");
+  std::string elements = fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n", in_script(data));
+  for (const auto& [id, bytes] : packed) {
+    std::string deflated;
+    Deflater(Deflater::Effort::small).append(bytes, deflated);
+    elements += fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, base64(deflated));
+  }
+  // Data first, so that a title containing the mark of another place is harmless.
+  return replaced(replaced(page, data_place, elements), title_place, xml_escaped(title));
+}
+
+ReportRun make_report_run(const fs::path& directory, const ReportFrames& frames) {
+  const fs::path absolute = fs::absolute(directory).lexically_normal();
+  const std::string name = (absolute.has_filename() ? absolute : absolute.parent_path()).filename().string();
+  const std::optional<Scenario> scenario = scenario_of_run(directory);
+  const EmbryoAxes axes = scenario ? axes_of(scenario->embryo) : anatomical_axes();
+  ReportRun run{{{"name", name},
+                 {"summary", read_summary(directory)},
+                 {"scenario", text_of(directory / "scenario.toml")},
+                 {"series", text_of(directory / "series.csv")},
+                 {"midline", text_of(directory / "midline.csv")},
+                 {"shell", frames.empty() ? ordered_json(nullptr) : shell_json(scenario, frames.rest_positions())},
+                 {"axes", axes},
+                 {"letters", letters_of(axes)},
+                 {"topologies", ordered_json::array()},
+                 {"arrays", ordered_json::array()}},
+                {},
+                {}};
+  frames.pack_into(run);
+  run.json["depth_word"] = depth_word(axes, run.views);
+  name_views(run.views, axes);
+  return run;
+}
+
+ReportRun read_report_run(const fs::path& directory, double most_bytes) {
+  std::error_code error;
+  if (!fs::exists(directory, error))
+    throw FileError(directory.string() + ": directory does not exist; give the --out directory of a `plica run`");
+  if (!fs::is_directory(directory, error))
+    throw FileError(directory.string() + ": is not a directory of results; give the --out directory of a `plica run`");
+  const bool has_frames = fs::exists(directory / "frames.pvd", error);
+  if (!has_frames && text_of(directory / "series.csv").empty())
+    throw FileError(directory.string() + ": contains no results; give the --out directory of a `plica run`");
+  ReportFrames frames(most_bytes);
+  if (has_frames) {
+    const ReferenceRun run(directory);
+    const std::vector<double> times = run.times_s();
+    for (std::size_t i = 0; i < times.size(); ++i) frames.add(run.frame(i), times[i]);
+  }
+  return make_report_run(directory, frames);
+}
+
 bool can_report() { return !report_template().empty(); }
 
-std::string report_page_of(const std::vector<std::filesystem::path>& directories, const ordered_json& outcomes) {
+std::string report_page_of(const std::vector<fs::path>& directories, const ordered_json& outcomes) {
   std::vector<ReportRun> runs;
   runs.reserve(directories.size());
   for (const auto& directory : directories)

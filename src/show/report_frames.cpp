@@ -1,8 +1,9 @@
 #include "show/report_frames.hpp"
 
 #include <algorithm>
+#include <cmath>
 
-#include "core/errors.hpp"
+#include "show/boundary_surface.hpp"
 
 namespace plica {
 namespace {
@@ -10,13 +11,6 @@ namespace {
 using nlohmann::ordered_json;
 constexpr std::size_t most_regions = 32;  // bits
 constexpr std::size_t most_given_arrays = 16;
-
-const std::vector<double>& cell_ids(const Frame& frame) {
-  const auto found = frame.element_scalars.find("cell_id");
-  if (found == frame.element_scalars.end())
-    throw FileError("the snapshot has no array cell_id; give one written by plica");
-  return found->second;
-}
 
 // Bits in the order of the names of `regions`.
 std::uint32_t region_bits(const Frame& frame, const std::vector<std::string>& regions, std::size_t element) {
@@ -29,29 +23,50 @@ std::uint32_t region_bits(const Frame& frame, const std::vector<std::string>& re
 }
 
 FrameTopology topology_of(const Frame& frame, const std::vector<std::string>& regions) {
-  FrameTopology topology{frame.elements, {}, {}, {}, {}, {}, {}, boundary_surface_of(frame), {}};
+  FrameTopology topology{frame.elements, {}, {}, {}, {}, {}};
   const auto value = [&](const char* name, std::size_t element) {
     const auto found = frame.element_scalars.find(name);
     return found == frame.element_scalars.end() ? 0.0 : found->second[element];
   };
-  const std::vector<double>& ids = cell_ids(frame);
+  const auto whole = [](const auto& number) { return static_cast<std::uint32_t>(number); };
+  std::vector<std::uint32_t> elements, mothers, generations, bits, facets, elements_of_facets, faces, outlines;
+  const std::vector<double>& ids = values_in(frame.element_scalars, "cell_id");
   std::map<double, std::uint32_t> number;
   for (std::size_t e = 0; e < ids.size(); ++e) {
-    const auto [place, is_new] = number.emplace(ids[e], static_cast<std::uint32_t>(number.size()));
+    for (const NodeId node : frame.elements[e]) elements.push_back(whole(node.index()));
+    const auto [place, is_new] = number.emplace(ids[e], whole(number.size()));
     topology.cell_of_element.push_back(place->second);
     if (!is_new) continue;
     topology.first_element.push_back(e);
-    topology.cell_id.push_back(static_cast<std::uint32_t>(ids[e]));
-    topology.mother_id.push_back(static_cast<std::uint32_t>(value("mother_id", e) + 1));
-    topology.generation.push_back(static_cast<std::uint32_t>(value("generation", e)));
-    topology.regions.push_back(region_bits(frame, regions, e));
+    topology.cell_id.push_back(whole(ids[e]));
+    mothers.push_back(whole(value("mother_id", e) + 1));
+    generations.push_back(whole(value("generation", e)));
+    bits.push_back(region_bits(frame, regions, e));
   }
+  const BoundarySurface boundary = boundary_surface_of(frame);
+  for (const BoundaryFacet& facet : boundary.facets) {
+    for (const NodeId node : facet.nodes) facets.push_back(whole(node.index()));
+    elements_of_facets.push_back(whole(facet.element));
+    faces.push_back(whole(facet.face));
+  }
+  for (const auto& outline : boundary.outlines)
+    for (const NodeId node : outline) outlines.push_back(whole(node.index()));
+  topology.structure = {{"elements", elements, 8},
+                        {"cell_of_element", topology.cell_of_element, 1},
+                        {"facets", facets, 4},
+                        {"element_of_facet", elements_of_facets, 1},
+                        {"face_of_facet", faces, 1},
+                        {"outlines", outlines, 2},
+                        {"cell_id", topology.cell_id, 1},
+                        {"mother_id", mothers, 1},
+                        {"generation", generations, 1},
+                        {"regions", bits, 1}};
   return topology;
 }
 
 bool shows(const FrameTopology& topology, const Frame& frame) {
   if (topology.elements != frame.elements) return false;
-  const std::vector<double>& ids = cell_ids(frame);
+  const std::vector<double>& ids = values_in(frame.element_scalars, "cell_id");
   for (std::size_t e = 0; e < ids.size(); ++e)
     if (topology.cell_id[topology.cell_of_element[e]] != ids[e]) return false;
   return true;
@@ -75,36 +90,6 @@ FrameMoment moment_of(const Frame& frame, const std::vector<ColourField>& fields
   return moment;
 }
 
-template <class Ids>
-std::vector<std::uint32_t> flat(const std::vector<Ids>& lists) {
-  std::vector<std::uint32_t> numbers;
-  for (const Ids& list : lists)
-    for (const NodeId node : list) numbers.push_back(static_cast<std::uint32_t>(node.index()));
-  return numbers;
-}
-
-void pack_structure(const FrameTopology& topology, const std::string& prefix, PackedArrays& arrays) {
-  const auto add = [&](const char* name, const std::vector<std::uint32_t>& values, std::size_t period) {
-    arrays.add(prefix + name, std::span<const std::uint32_t>(values), period);
-  };
-  add("elements", flat(topology.elements), 8);
-  add("cell_of_element", topology.cell_of_element, 1);
-  std::vector<std::uint32_t> nodes, elements, faces;
-  for (const BoundaryFacet& facet : topology.boundary.facets) {
-    for (const NodeId node : facet.nodes) nodes.push_back(static_cast<std::uint32_t>(node.index()));
-    elements.push_back(static_cast<std::uint32_t>(facet.element));
-    faces.push_back(static_cast<std::uint32_t>(facet.face));
-  }
-  add("facets", nodes, 4);
-  add("element_of_facet", elements, 1);
-  add("face_of_facet", faces, 1);
-  add("outlines", flat(topology.boundary.outlines), 2);
-  add("cell_id", topology.cell_id, 1);
-  add("mother_id", topology.mother_id, 1);
-  add("generation", topology.generation, 1);
-  add("regions", topology.regions, 1);
-}
-
 using Box = std::array<Quantiser, 3>;
 
 void pack_moments(const FrameTopology& topology, const std::string& prefix, const Box& box, ReportRun& run) {
@@ -112,16 +97,14 @@ void pack_moments(const FrameTopology& topology, const std::string& prefix, cons
   for (const FrameMoment& moment : topology.moments)
     for (const auto& position : moment.positions)
       for (int i = 0; i < 3; ++i) steps.push_back(box[i].step_of(position[i]));
-  run.frames.add(prefix + "positions", std::span<const std::uint16_t>(steps),
-                 3 * topology.moments.front().positions.size());
+  run.frames.add(prefix + "positions", steps, 3 * topology.moments.front().positions.size());
   for (std::size_t f = 0; f < run.colours.size(); ++f) {
     const std::string& name = run.colours[f].name;
     steps.clear();
     const Quantiser& range = run.fields.at(name);
     for (const FrameMoment& moment : topology.moments)
       for (const float value : moment.fields[f]) steps.push_back(range.step_of(value));
-    run.frames.add(prefix + "field/" + name, std::span<const std::uint16_t>(steps),
-                   topology.moments.front().fields[f].size());
+    run.frames.add(prefix + "field/" + name, steps, topology.moments.front().fields[f].size());
   }
 }
 
@@ -141,7 +124,7 @@ void pack_frames(const std::vector<FrameTopology>& topologies, ReportRun& run) {
   for (std::size_t t = 0; t < topologies.size(); ++t) {
     const FrameTopology& topology = topologies[t];
     const std::string prefix = std::to_string(t) + "/";
-    pack_structure(topology, prefix, run.frames);
+    for (const auto& [name, values, period] : topology.structure) run.frames.add(prefix + name, values, period);
     pack_moments(topology, prefix, box, run);
     ordered_json times = ordered_json::array();
     for (const FrameMoment& moment : topology.moments) times.push_back(moment.time_s);
@@ -162,8 +145,19 @@ double bytes_of(const FrameMoment& moment) {
 
 }  // namespace
 
+void Quantiser::include(double value) {
+  low = any_ ? std::min(low, value) : value;
+  high = any_ ? std::max(high, value) : value;
+  any_ = true;
+}
+
+std::uint16_t Quantiser::step_of(double value) const {
+  if (!(high > low)) return 0;
+  return static_cast<std::uint16_t>(std::lround(std::clamp((value - low) / (high - low), 0.0, 1.0) * 65535));
+}
+
 void ReportFrames::add(const Frame& frame, double time_s) {
-  if (topologies_.empty()) {
+  if (empty()) {
     regions_ = regions_of(frame);
     coloured_regions_ = coloured_regions(frame);
     regions_.resize(std::min(regions_.size(), most_regions));

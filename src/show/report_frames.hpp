@@ -1,4 +1,4 @@
-// Snapshots of a run for its report page: collected, thinned out and packed.
+// Snapshots of a run for its report page: collected, thinned out and packed. viewer/src/packed.ts reads them.
 #pragma once
 
 #include <array>
@@ -6,16 +6,53 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <tuple>
 #include <vector>
 
-#include "show/boundary_surface.hpp"
 #include "show/looks.hpp"
-#include "show/packing.hpp"
 #include "tissue/files/frame_file.hpp"
 
 namespace plica {
 
-/// Run as JSON and packed numbers; content: report_run.hpp.
+/// Collection of integer arrays that compresses well. Each number is stored as its difference from the one `period`
+/// earlier (modulo 2^bits), with all lowest bytes of an array first, then the next ones: small changes between
+/// snapshots become long runs of equal bytes.
+class PackedArrays {
+ public:
+  template <class Number>  // unsigned, of 16 or 32 bits
+  void add(const std::string& name, const std::vector<Number>& values, std::size_t period) {
+    const std::size_t count = values.size(), offset = bytes_.size(), size = sizeof(Number);
+    index_.push_back({{"name", name}, {"bits", 8 * size}, {"period", period}, {"count", count}, {"offset", offset}});
+    bytes_.resize(offset + count * size);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto change = static_cast<Number>(i < period ? values[i] : values[i] - values[i - period]);
+      for (std::size_t b = 0; b < size; ++b)
+        bytes_[offset + b * count + i] = static_cast<char>(change >> (8 * b) & 0xff);
+    }
+  }
+
+  /// Bytes of all arrays, before compression.
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+  /// JSON list of {name, bits, period, count, offset} with the position of each array in the bytes.
+  [[nodiscard]] const nlohmann::ordered_json& index() const { return index_; }
+
+ private:
+  nlohmann::ordered_json index_ = nlohmann::ordered_json::array();
+  std::string bytes_;
+};
+
+/// Quantization of a range in 65536 equal steps.
+struct Quantiser {
+  double low = 0, high = 0;
+  void include(double value);
+  /// Step nearest to a value.
+  [[nodiscard]] std::uint16_t step_of(double value) const;
+
+ private:
+  bool any_ = false;
+};
+
+/// Run as JSON and packed numbers; content: report.hpp.
 struct ReportRun {
   nlohmann::ordered_json json;
   PackedArrays frames;
@@ -36,9 +73,9 @@ struct FrameMoment {
 /// Snapshots between two divisions, with equal cells and elements.
 struct FrameTopology {
   std::vector<std::array<NodeId, 8>> elements;
-  std::vector<std::uint32_t> cell_of_element, cell_id, mother_id, generation, regions;
-  std::vector<std::size_t> first_element;  // of each cell
-  BoundarySurface boundary;
+  std::vector<std::uint32_t> cell_of_element, cell_id;
+  std::vector<std::size_t> first_element;                                                   // of each cell
+  std::vector<std::tuple<std::string, std::vector<std::uint32_t>, std::size_t>> structure;  // name, numbers, period
   std::vector<FrameMoment> moments;
 };
 

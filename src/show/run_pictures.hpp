@@ -1,4 +1,4 @@
-// Pictures of the snapshots of a run: times, scale, colours.
+// Pictures of the snapshots of a run (times, scale, colours), and of an undeformed mesh.
 #pragma once
 
 #include <filesystem>
@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "measure/reference_run.hpp"
+#include "scenario/scenario.hpp"
 #include "show/picture.hpp"
 
 namespace plica {
 
 struct PictureOptions {
   bool usual_view = false;              // first a row of the default view (views_of)
-  std::vector<View> views;              // then one row per view
+  std::vector<std::string> views;       // then one row per view, by name
   std::vector<double> cuts_at_x_um;     // then cross-sections at these x of the run
   bool sections = false;                // then those at 25, 50 and 75 % of the reference length
   std::string colour = "displacement";  // quantity, one of fields_of()
@@ -22,17 +23,22 @@ struct PictureOptions {
   int width_px = 0, height_px = 0;      // as in Picture
 };
 
+/// Time nearest to another; empty before the first, or beyond the last by more than half of the last interval.
+std::optional<double> nearest_time_s(const std::vector<double>& times_s, double time_s);
+
+/// Picture of an undeformed mesh, coloured by one of its arrays or `region`, with one row per view (none: the default
+/// view). Throws UsageError for an unknown name.
+Picture rest_picture(Frame frame, const std::string& colour, const std::vector<std::string>& views,
+                     const EmbryoAxes& axes);
+
 /// Pictures of one run, with a common colour scale and panel size from all its snapshots.
 class RunPictures {
  public:
   /// Throws FileError without snapshots, for a missing array, or a requested shell that the run does not have;
-  /// UsageError for an unknown quantity.
-  RunPictures(std::filesystem::path directory, PictureOptions options);
+  /// UsageError for an unknown quantity or view.
+  RunPictures(std::filesystem::path directory, const PictureOptions& options);
 
   [[nodiscard]] const std::vector<double>& times_s() const { return times_s_; }  // of the snapshots
-
-  /// Time of the nearest snapshot; empty before the first, or beyond the last by more than half of the last interval.
-  [[nodiscard]] std::optional<double> nearest_time_s(double time_s) const;
 
   /// Representative times: when a node first reaches 0, 1/(count - 1), ..., 1 of the largest displacement of the run.
   /// Without displacements, equal intervals.
@@ -45,22 +51,15 @@ class RunPictures {
   [[nodiscard]] std::string time_text(double time_s) const;
 
  private:
-  void look_through();
   void centre(Frame& frame) const;
-  void add_rows(const Frame& rest);
-  void add_cuts(const Vectors& rest);
+  void add_rows(const Frame& rest, const PictureOptions& options, const EmbryoAxes& axes);
+  std::pair<double, double> look_through();
+  void add_shell(const std::optional<Scenario>& scenario, const Vectors& rest);
 
   ReferenceRun run_;
-  PictureOptions options_;
-  ColourField field_;
   std::vector<double> times_s_, farthest_um_;  // snapshots
-  double smallest_ = 0, largest_ = 0;          // of the field, over all snapshots
-  std::vector<PictureRow> rows_;
-  Vec3 middle_ = Vec3::Zero();  // centre of the undeformed body, if far from the origin
-  Frame rest_;
-  EmbryoAxes axes_ = anatomical_axes();
-  bool is_embryo_ = true;
-  std::optional<Capsule> shell_;
+  Vec3 middle_ = Vec3::Zero();                 // centre of the undeformed body, if far from the origin
+  Picture common_;                             // without columns
 };
 
 }  // namespace plica

@@ -2,69 +2,24 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "measure/reference_run.hpp"
-#include "scenario/differences.hpp"
-#include "study/frame_surface.hpp"
 
 namespace plica {
-
-/// One number of both runs; empty if missing.
-struct NumberPair {
-  std::string name;
-  std::optional<double> a, b;
-
-  [[nodiscard]] bool same() const { return a == b; }
-  [[nodiscard]] std::optional<double> difference() const {  // a - b
-    return a && b ? std::optional(*a - *b) : std::nullopt;
-  }
-};
-
-/// Column of series.csv over the times common to both runs.
-struct ColumnPair {
-  NumberPair at_time;                        // at the times compared
-  std::optional<double> largest_difference;  // |a - b| at rows of a, b interpolated linearly; empty without rows
-  double largest_at_s = 0;
-};
-
-/// Snapshot of a run: where, when and how large.
-struct RunMoment {
-  std::filesystem::path directory;
-  std::string scenario, status;  // of the run; empty without a summary
-  double time_s = 0;
-  std::size_t nodes = 0, elements = 0;
-};
-
-struct NodeComparison {
-  Distances distances;
-  NodeId farthest;
-  std::optional<double> relative_energy_norm;  // of the displacements of a, relative to b
-};
-
-struct SurfaceComparison {
-  Distances a_to_b, b_to_a;
-  double hausdorff = 0;    // larger of both maxima
-  double facet_error = 0;  // of the triangles that approximate bilinear facets; um
-};
-
-struct Comparison {
-  RunMoment a, b;
-  std::vector<KeyDifference> scenario;  // keys that differ; none if a run has no scenario.toml
-  std::optional<NodeComparison> nodes;  // only for meshes with equal elements
-  SurfaceComparison apical;
-  std::vector<NumberPair> geometry;  // volume and areas at the times compared
-  std::vector<NumberPair> summary;   // numbers of summary.json, at the end of the runs
-  std::vector<ColumnPair> series;    // common columns, up to the times compared
-};
 
 /// Read the snapshot of a run at a time, or its last. Throws UsageError if there is none.
 Frame frame_to_compare(const ReferenceRun& run, std::optional<double> time_s);
 
-/// Compare two snapshots and the numbers of their runs. Throws FileError or MeshError for an unreadable file.
-Comparison compare_runs(const ReferenceRun& run_a, const Frame& a, const ReferenceRun& run_b, const Frame& b);
+/// Compare two snapshots and the numbers of their runs. Keys are listed in docs/how-to/compare.md; missing values are
+/// null. Throws FileError or MeshError for an unreadable file.
+nlohmann::ordered_json compare_runs(const ReferenceRun& run_a, const Frame& a, const ReferenceRun& run_b,
+                                    const Frame& b);
+
+/// Convert a comparison to tables for the terminal. Equal numbers are counted, not listed.
+std::string comparison_text(const nlohmann::ordered_json& comparison);
 
 /// Write the mesh of a for ParaView with `distance_um` of each node from the surfaces of b (node_distances) and, for
 /// equal meshes, the vector `deviation_um` from the same node of b. Throws FileError.

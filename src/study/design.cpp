@@ -11,11 +11,13 @@
 #include <map>
 #include <numeric>
 #include <random>
+#include <sstream>
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/numbers.hpp"
 #include "scenario/print.hpp"
+#include "scenario/toml_reader.hpp"
 #include "study/csv_fields.hpp"
 
 namespace plica {
@@ -93,7 +95,7 @@ std::string number_of(const StudyKey& key, double value) {
 std::string in_steps(const StudyKey& key, double step) {
   const double value = key.low + *key.step * step;
   const auto is_whole = [](double number) { return number == std::floor(number); };
-  if (key.step && is_whole(*key.step) && is_whole(key.low)) return fmt::format("{:.0f}", value);
+  if (is_whole(*key.step) && is_whole(key.low)) return fmt::format("{:.0f}", value);
   return float_in_toml(value);
 }
 
@@ -161,10 +163,7 @@ Values list(const StudyInput& study) {
 // Value of a key in the scenario. Throws ScenarioError if it has none.
 std::string own_value(const StudyInput& study, const toml::table& resolved, const StudyKey& key) {
   const toml::node_view<const toml::node> node = toml::at_path(resolved, key.key);
-  if (const auto text = node.value<std::string>()) return in_toml(*text);
-  if (const auto* integer = node.as_integer()) return fmt::format("{}", integer->get());
-  if (const auto* number = node.as_floating_point()) return float_in_toml(number->get());
-  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  if (node.is_value()) return value_in_toml(*node.node());
   throw ScenarioError({{study.file, key.line, "vary." + key.key, "has no single value in the scenario to vary about",
                         "give one in [set], or choose another kind of design"}});
 }
@@ -329,11 +328,8 @@ StudyDesign points_of_csv(const std::string& text) {
     point.point = whole_number(row[1]);
     point.replicate = whole_number(row[2]);
     point.values.assign(row.begin() + 3, row.end() - 1);
-    for (std::size_t begin = 0; begin < row.back().size();) {
-      const std::size_t end = std::min(row.back().find(' ', begin), row.back().size());
-      if (end > begin) point.seeds.push_back(row.back().substr(begin, end - begin));
-      begin = end + 1;
-    }
+    std::istringstream seeds(row.back());
+    for (std::string seed; seeds >> seed;) point.seeds.push_back(seed);
     design.runs.push_back(std::move(point));
   }
   return design;

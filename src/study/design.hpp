@@ -1,9 +1,10 @@
-// Points of a study: values of its keys for each run.
+// Points of a study: values of its keys for each run; and errors of its scenario, located in the study's file.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "core/errors.hpp"
 #include "study/study_input.hpp"
 
 namespace plica {
@@ -37,5 +38,15 @@ std::string name_of_run(const StudyPoint& run, bool has_replicates);
 /// Convert to points.csv and back. Throws FileError for another text.
 std::string points_csv(const StudyDesign& design);
 StudyDesign points_of_csv(const std::string& text);
+
+/// Relocate errors to the keys of [set] and [vary] that cause them.
+ScenarioError in_study(const ScenarioError& error, const StudyInput& study);
+
+/// Throw ScenarioError if a value of the design, or a bound of a key, has the wrong type or is out of range, whatever
+/// the other values.
+void require_values_of_keys(const StudyInput& study, const StudyDesign& design);
+
+/// Throw ScenarioError if a listed value gives no valid scenario in any run. At least one run must be valid.
+void require_usable_values(const StudyInput& study, const StudyDesign& design);
 
 }  // namespace plica

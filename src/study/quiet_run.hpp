@@ -25,7 +25,7 @@ struct QuietRunHooks {
   std::function<bool()> stop_requested = {};            // polled often; once true, the run ends as interrupted
   std::function<void(const Observation&)> on_row = {};  // after every accepted step
   std::function<bool(const Column&)> leave_out = {};    // columns to skip
-  std::filesystem::path keep_in = {};                   // directory to save to and resume from (UnfinishedRun)
+  std::filesystem::path keep_in = {};                   // directory to save to and resume from
   double keep_every_s = 30;
 };
 

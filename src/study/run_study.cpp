@@ -1,9 +1,12 @@
 #include "study/run_study.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
-#include <numeric>
+#include <memory>
+#include <set>
 #include <utility>
 
 #include "core/errors.hpp"
@@ -29,13 +32,8 @@ void require_room(const fs::path& directory, const std::string& run, std::size_t
 
 void run_study(const Study& study, StudyDirectory& directory, Workers workers, const std::vector<std::size_t>& runs,
                const StudyHooks& hooks) {
-  std::vector<std::size_t> open = runs;
-  if (runs.empty()) {
-    open.resize(study.runs());
-    std::iota(open.begin(), open.end(), 0);
-  }
-  const StudyRows done = directory.rows();
-  std::erase_if(open, [&](std::size_t run) { return done.contains(run); });
+  std::vector<std::size_t> open = directory.open_runs();
+  if (!runs.empty()) std::erase_if(open, [&](std::size_t run) { return !std::ranges::binary_search(runs, run); });
 
   const ThreadCount one(1);
   const auto row_of = [&](std::size_t run) -> std::string {
@@ -46,9 +44,7 @@ void run_study(const Study& study, StudyDirectory& directory, Workers workers, c
   bool has_room = study.input().each == KeptOfRun::row;  // or checked already
   std::size_t left = open.size();
   const auto take = [&](std::size_t run, const std::string& answer, const std::string& reason) {
-    RunRow crashed = study.not_run();
-    crashed.status = "crashed", crashed.reason = reason;
-    const std::string row = reason.empty() ? answer : study.line_of(run, crashed);
+    const std::string row = reason.empty() ? answer : study.line_without_result(run, reason);
     if (row.empty()) return;  // another process is running it
     directory.add(run, row);
     --left;
@@ -56,6 +52,36 @@ void run_study(const Study& study, StudyDirectory& directory, Workers workers, c
     if (hooks.on_row) hooks.on_row(run, row);
   };
   work_in_processes(workers.processes, open, row_of, {take, hooks.stop_requested});
+}
+
+StudyForecast forecast(const Study& study, const std::function<bool()>& stop) {
+  StudyForecast result;
+  result.runs = study.runs();
+  std::set<int> points;
+  std::optional<std::size_t> first;
+  for (std::size_t r = 0; r < study.runs(); ++r) {
+    const StudyPoint& run = study.design().runs[r];
+    if (!points.insert(run.point).second) continue;
+    try {
+      (void)study.scenario_of(r);
+      if (!first) first = r;
+    } catch (const ScenarioError& error) {
+      result.refused.push_back(fmt::format("point {}: {}", run.point, error.what()));
+    }
+  }
+  result.points = points.size();
+  result.first_run = first.value();  // exists in any valid study
+  std::string directory = (fs::temp_directory_path() / "plica-study-XXXXXX").string();
+  if (::mkdtemp(directory.data()) == nullptr)
+    throw FileError(directory + ": cannot be created: " + std::generic_category().message(errno));
+  const std::shared_ptr<void> removal(nullptr, [&](void*) {
+    std::error_code ignored;
+    fs::remove_all(directory, ignored);
+  });
+  if (const std::optional<RunRow> row = study.run(result.first_run, directory, stop)) result.first = *row;
+  result.bytes_a_run = static_cast<double>(bytes_in(directory)) +
+                       2 * static_cast<double>(study.line_of(result.first_run, result.first).size());
+  return result;
 }
 
 }  // namespace plica

@@ -36,18 +36,14 @@ std::string in_shell(const std::string& text) {
   return quoted + "'";
 }
 
-std::vector<std::size_t> open_runs(const Study& study, const StudyDirectory& directory) {
-  const StudyRows rows = directory.rows();
-  std::vector<std::size_t> open;
-  for (std::size_t r = 0; r < study.runs(); ++r)
-    if (!rows.contains(r)) open.push_back(r);
-  return open;
+// `plica study WHAT` of the study in the directory above.
+std::string program(const fs::path& folder, const char* what) {
+  return fmt::format("{} study {} {}", in_shell(fs::read_symlink("/proc/self/exe").string()), what,
+                     in_shell(folder.parent_path().string()));
 }
 
 // When Slurm's limit is near or Slurm preempts the task, plica stops in order, and an unfinished task is queued again.
 std::string task_script(const fs::path& folder, const SlurmSubmission& plan) {
-  const std::string program = in_shell(fs::read_symlink("/proc/self/exe").string());
-  const std::string study = in_shell(folder.parent_path().string());
   return fmt::format(R"(#!/bin/bash
 #SBATCH --job-name=plica-study
 #SBATCH --requeue --open-mode=append --signal=B:USR1@60
@@ -61,10 +57,10 @@ again() {{
 trap again USR1
 trap 'ended; exit 143' TERM
 export OMP_NUM_THREADS=1
-{} study work {} --task "$SLURM_ARRAY_TASK_ID" & child=$!  # bash handles signals only while it waits
+{} --task "$SLURM_ARRAY_TASK_ID" & child=$!  # bash handles signals only while it waits
 wait "$child"
 )",
-                     plan.limit_min, plan.memory_MB, most_restarts, program, study);
+                     plan.limit_min, plan.memory_MB, most_restarts, program(folder, "work"));
 }
 
 std::string gather_script(const fs::path& folder) {
@@ -73,9 +69,9 @@ std::string gather_script(const fs::path& folder) {
 #SBATCH --requeue --open-mode=append
 #SBATCH --ntasks=1 --cpus-per-task=1 --time=60
 export OMP_NUM_THREADS=1
-exec {} study gather {}
+exec {}
 )",
-                     in_shell(fs::read_symlink("/proc/self/exe").string()), in_shell(folder.parent_path().string()));
+                     program(folder, "gather"));
 }
 
 std::string submit(std::vector<std::string> words, const SlurmOptions& options) {
@@ -98,9 +94,8 @@ Json jobs_in(const StudyDirectory& directory) {
   }
 }
 
-void submit_open(const Study& study, const StudyDirectory& directory, const SlurmOptions& options, int attempt,
-                 SlurmSubmission& plan) {
-  const std::vector<std::size_t> open = open_runs(study, directory);
+void submit_open(const StudyDirectory& directory, const SlurmOptions& options, int attempt, SlurmSubmission& plan) {
+  const std::vector<std::size_t> open = directory.open_runs();
   const fs::path here = folder(directory);
   plan.runs = open.size();
   const auto in_tasks = [&](std::size_t tasks) { return (open.size() + tasks - 1) / tasks; };  // runs of each
@@ -134,7 +129,7 @@ SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, c
   if (error) throw FileError(folder(directory).string() + ": cannot be created: " + error.message());
   fs::remove(folder(directory) / "cancelled", error);
   SlurmSubmission plan;
-  const std::vector<std::size_t> open = open_runs(study, directory);
+  const std::vector<std::size_t> open = directory.open_runs();
   if (!open.empty())
     run_study(study, directory, {}, {open.front()},
               {[&](std::size_t, const std::string& row) {
@@ -150,7 +145,7 @@ SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, c
     write_file(folder(directory) / "ended", "");
     return plan;
   }
-  submit_open(study, directory, options, 0, plan);
+  submit_open(directory, options, 0, plan);
   return plan;
 }
 
@@ -158,18 +153,17 @@ std::vector<std::size_t> runs_of_task(const StudyDirectory& directory, int task)
   std::istringstream text(read_file(folder(directory) / "runs.txt"));
   std::size_t runs_a_task = 0;
   text >> runs_a_task;
-  std::vector<std::size_t> all, result;
-  for (std::size_t run = 0; text >> run;) all.push_back(run);
-  const std::size_t begin = static_cast<std::size_t>(task) * runs_a_task;
-  if (task < 0 || runs_a_task == 0 || begin >= all.size())
+  std::vector<std::size_t> runs;
+  std::size_t place = 0;
+  for (std::size_t run = 0; text >> run; ++place)
+    if (task >= 0 && runs_a_task > 0 && place / runs_a_task == static_cast<std::size_t>(task)) runs.push_back(run);
+  if (runs.empty())
     throw UsageError(fmt::format("--task {}: not a task of the study; give a number of its job array", task));
-  result.assign(all.begin() + static_cast<long>(begin),
-                all.begin() + static_cast<long>(std::min(begin + runs_a_task, all.size())));
-  return result;
+  return runs;
 }
 
-std::string go_on_on_slurm(const Study& study, const StudyDirectory& directory) {
-  const std::size_t missing = open_runs(study, directory).size();
+std::string go_on_on_slurm(const StudyDirectory& directory) {
+  const std::size_t missing = directory.open_runs().size();
   const Json jobs = jobs_in(directory);
   const int attempt = jobs.value("attempt", 0);
   std::error_code error;
@@ -177,8 +171,8 @@ std::string go_on_on_slurm(const Study& study, const StudyDirectory& directory) 
   if (missing > 0 && !is_cancelled && attempt < jobs.value("retries", 0)) {
     SlurmSubmission plan;
     plan.run_s = jobs.value("run_s", 0.0), plan.memory_MB = jobs.value("memory_MB", 1000);
-    submit_open(study, directory, {jobs.value("sbatch", std::vector<std::string>{}), jobs.value("retries", 0)},
-                attempt + 1, plan);
+    submit_open(directory, {jobs.value("sbatch", std::vector<std::string>{}), jobs.value("retries", 0)}, attempt + 1,
+                plan);
     return fmt::format("{} runs have no result; resubmitted as job {}", missing, plan.array);
   }
   write_file(folder(directory) / "ended", "");

@@ -38,7 +38,7 @@ std::vector<std::size_t> runs_of_task(const StudyDirectory& directory, int task)
 
 /// Resubmit runs without a row, `retries` times at most; called by the last job when the table is written. Returns a
 /// sentence about what was done.
-std::string go_on_on_slurm(const Study& study, const StudyDirectory& directory);
+std::string go_on_on_slurm(const StudyDirectory& directory);
 
 /// Whether a study was submitted; whether its jobs have ended.
 bool was_submitted(const StudyDirectory& directory);

@@ -13,7 +13,6 @@
 #include "show/recorded_run.hpp"
 #include "study/csv_fields.hpp"
 #include "study/quiet_run.hpp"
-#include "study/study_errors.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

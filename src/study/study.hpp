@@ -50,9 +50,12 @@ class Study {
 
   /// Header of runs.csv: point, keys, replicate, status, output variables, steps, wall_s, reason.
   [[nodiscard]] std::string header() const;
-  /// Row of a run that has not ended.
-  [[nodiscard]] RunRow not_run() const { return {"not_run", decltype(RunRow::measures)(measures_.size()), 0, 0, ""}; }
   [[nodiscard]] std::string line_of(std::size_t run, const RunRow& row) const;
+  /// Line of a run without a result: not_run, or crashed with a reason.
+  [[nodiscard]] std::string line_without_result(std::size_t run, const std::string& crash = "") const {
+    return line_of(run,
+                   {crash.empty() ? "not_run" : "crashed", decltype(RunRow::measures)(measures_.size()), 0, 0, crash});
+  }
 
  private:
   void check();

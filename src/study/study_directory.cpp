@@ -7,7 +7,6 @@
 #include <array>
 #include <charconv>
 #include <chrono>
-#include <nlohmann/json.hpp>
 
 #include "core/errors.hpp"
 #include "core/numbers.hpp"
@@ -34,14 +33,6 @@ std::string resolved_scenario(const StudyInput& input) {
 
 std::string this_plica() { return fmt::format("{} ({}, {})", version(), commit(), compiler()); }
 
-Json read_json(const fs::path& file) {
-  try {
-    return Json::parse(read_file(file));
-  } catch (const Json::exception&) {
-    throw FileError(file.string() + ": is damaged; restart the study with --overwrite");
-  }
-}
-
 void require_same_plica(const fs::path& directory, const Json& begun) {
   const std::string with = begun.value("plica", "");
   if (with != this_plica())
@@ -51,27 +42,22 @@ void require_same_plica(const fs::path& directory, const Json& begun) {
                     directory.string(), with, this_plica()));
 }
 
-// First key that differs, with both values; empty if only comments or blanks differ.
-std::string difference(const std::string& before, const std::string& now) {
-  const std::vector<KeyDifference> all = scenario_differences(before, now);
-  if (all.empty()) return "";
-  return all.front().text() + (all.size() > 1 ? fmt::format(" (and {} more)", all.size() - 1) : "");
-}
-
 constexpr const char* change_back = "revert the change, restart with --overwrite, or give another --out";
 
-void require_same_study(const fs::path& directory, const StudyInput& input) {
-  const std::string changed = difference(read_file(directory / "study.toml"), input.text);
-  if (!changed.empty())
-    throw UsageError(fmt::format("{}: the study {} has changed since its start: {}; {}", directory.string(), input.file,
-                                 changed, change_back));
+// Refuse a change of more than comments or blanks since the start, with the first key and both values.
+void require_unchanged(const fs::path& file, const std::string& now, const std::string& what, const char* since) {
+  const std::vector<KeyDifference> all = scenario_differences(read_file(file), now);
+  if (all.empty()) return;
+  const auto shown = [](const std::string& value) { return value.empty() ? "missing" : value; };
+  const std::string others = all.size() > 1 ? fmt::format(" (and {} more)", all.size() - 1) : "";
+  throw UsageError(fmt::format("{}: the {} has changed since {}: {} was {} and is now {}{}; {}",
+                               file.parent_path().string(), what, since, all.front().key, shown(all.front().a),
+                               shown(all.front().b), others, change_back));
 }
 
 void require_same_scenario(const fs::path& directory, const StudyInput& input) {
-  const std::string changed = difference(read_file(directory / "scenario.toml"), resolved_scenario(input));
-  if (!changed.empty())
-    throw UsageError(fmt::format("{}: the scenario {} has changed since the start of the study: {}; {}",
-                                 directory.string(), input.scenario.file, changed, change_back));
+  require_unchanged(directory / "scenario.toml", resolved_scenario(input), "scenario " + input.scenario.file,
+                    "the start of the study");
 }
 
 // Whether the directory contains files other than those of a study killed at its start.
@@ -106,9 +92,8 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
   const StudyInput& input = study.input();
   const bool holds_one = fs::exists(directory / "study.json", error);
   if (holds_one && start == Start::resumed) {
-    const Json begun = read_json(directory / "study.json");
-    require_same_plica(directory, begun);
-    require_same_study(directory, input);
+    require_same_plica(directory, result.begun());
+    require_unchanged(directory / "study.toml", input.text, "study " + input.file, "its start");
     require_same_scenario(directory, input);
     if (read_file(directory / "points.csv") != points_csv(study.design()))
       throw UsageError(fmt::format("{}: the points of the study, or their order, have changed since its start; {}",
@@ -151,7 +136,7 @@ StudyDirectory StudyDirectory::look(const fs::path& directory) {
 
 std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory) {
   StudyDirectory result = look(directory);
-  const Json begun = read_json(directory / "study.json");
+  const Json begun = result.begun();
   StudyInput input =
       parse_study(begun.value("name", "study"), begun.value("file", "study.toml"), read_file(directory / "study.toml"));
   return {std::move(result), Study(std::move(input), points_of_csv(read_file(directory / "points.csv")),
@@ -160,13 +145,22 @@ std::pair<StudyDirectory, Study> StudyDirectory::open(const fs::path& directory)
 
 std::pair<StudyDirectory, Study> StudyDirectory::open_to_run(const fs::path& directory) {
   auto opened = open(directory);
-  require_same_plica(directory, read_json(directory / "study.json"));
+  require_same_plica(directory, opened.first.begun());
   require_same_scenario(directory, opened.second.input());
   return opened;
 }
 
+Json StudyDirectory::begun() const {
+  const fs::path file = directory_ / "study.json";
+  try {
+    return Json::parse(read_file(file));
+  } catch (const Json::exception&) {
+    throw FileError(file.string() + ": is damaged; restart the study with --overwrite");
+  }
+}
+
 StudyRows StudyDirectory::rows() const {
-  const std::size_t runs = read_json(directory_ / "study.json").value("runs", std::size_t{0});
+  const std::size_t runs = begun().value("runs", std::size_t{0});
   std::vector<fs::path> files;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(directory_ / "rows", error)) files.push_back(entry.path());
@@ -174,6 +168,15 @@ StudyRows StudyDirectory::rows() const {
   StudyRows rows;
   for (const fs::path& file : files) read_rows(file, rows, runs);
   return rows;
+}
+
+std::vector<std::size_t> StudyDirectory::open_runs() const {
+  const StudyRows ended = rows();
+  const std::size_t runs = begun().value("runs", std::size_t{0});
+  std::vector<std::size_t> open;
+  for (std::size_t run = 0; run < runs; ++run)
+    if (!ended.contains(run)) open.push_back(run);
+  return open;
 }
 
 void StudyDirectory::add(std::size_t run, const std::string& row) {
@@ -193,7 +196,7 @@ void StudyDirectory::gather(const Study& study) const {
   std::string text = study.header() + '\n';
   for (std::size_t r = 0; r < study.runs(); ++r) {
     const auto row = rows.find(r);
-    text += row != rows.end() ? row->second : study.line_of(r, study.not_run());
+    text += row != rows.end() ? row->second : study.line_without_result(r);
     text += '\n';
   }
   write_file(directory_ / "runs.csv", text);

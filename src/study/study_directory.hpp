@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,11 @@ class StudyDirectory {
   static StudyDirectory look(const std::filesystem::path& directory);
 
   [[nodiscard]] const std::filesystem::path& path() const { return directory_; }
+  /// Content of study.json. Throws FileError if it is damaged.
+  [[nodiscard]] nlohmann::ordered_json begun() const;
   [[nodiscard]] StudyRows rows() const;
+  /// Runs without a row.
+  [[nodiscard]] std::vector<std::size_t> open_runs() const;
   /// Add a row to the file of this process.
   void add(std::size_t run, const std::string& row);
   /// Write runs.csv with all rows; runs without a row have status not_run.

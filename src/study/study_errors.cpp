@@ -1,5 +1,3 @@
-#include "study/study_errors.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "scenario/print.hpp"
 #include "scenario/schema.hpp"
 #include "scenario/suggest.hpp"
+#include "study/design.hpp"
 
 namespace plica {
 namespace {

@@ -1,8 +1,8 @@
 // report.html of a study: one page with all runs, to sort, filter and plot; works offline.
 //
-// Data: name, scenario, design, `set`, `columns` and `arrays`. Columns: those of runs.csv, `seeds` and `kept` (files in
-// points/). Numbers are stored as two halves of a double, or as float in large studies, missing ones as NaN; words as
-// indices into the list of a column, from 1, 0 if missing. Shown by viewer/src/study/.
+// Data: name, scenario, design, `set`, `measures`, and three deflated texts with one line per run: points.csv (after
+// its heading), its row of runs.csv (empty if missing) and the path of a kept file in points/. Shown by
+// viewer/src/study/.
 #pragma once
 
 #include <filesystem>

@@ -42,10 +42,18 @@ bool read_all(int end, void* data, std::size_t size) {
   return true;
 }
 
-// Answer: a letter for its kind (r: result, f: FileError), its length, its text.
-bool send_answer(int end, char kind, const std::string& text) {
-  const std::uint64_t size = text.size();
-  return write_all(end, &kind, 1) && write_all(end, &size, sizeof size) && write_all(end, text.data(), text.size());
+// Answers: their length, then a letter for the kind (r: result, f: FileError), and a text.
+bool send_answer(int end, const std::string& answer) {
+  const std::uint64_t size = answer.size();
+  return write_all(end, &size, sizeof size) && write_all(end, answer.data(), answer.size());
+}
+
+// Empty if the process has ended.
+std::string read_answer(int end) {
+  std::uint64_t size = 0;
+  if (!read_all(end, &size, sizeof size)) return "";
+  std::string answer(size, ' ');
+  return read_all(end, answer.data(), size) ? answer : "";
 }
 
 // Request long time slices for more workers than cores: each switch refills the caches. With the usual 3 ms four
@@ -71,10 +79,10 @@ int run_worker(int end, const std::function<std::string(std::size_t)>& do_work) 
   std::uint64_t piece = 0;
   while (told_to_stop == 0 && read_all(end, &piece, sizeof piece)) {
     try {
-      const std::string answer = do_work(static_cast<std::size_t>(piece));
-      if (told_to_stop != 0 || !send_answer(end, 'r', answer)) break;
+      const std::string answer = 'r' + do_work(static_cast<std::size_t>(piece));
+      if (told_to_stop != 0 || !send_answer(end, answer)) break;
     } catch (const FileError& error) {
-      send_answer(end, 'f', error.what());
+      send_answer(end, std::string("f") + error.what());
       break;
     }
   }
@@ -97,19 +105,9 @@ class Worker {
   [[nodiscard]] int end() const { return process_.end(); }
   [[nodiscard]] std::optional<std::size_t> piece() const { return piece_; }
 
-  struct Answer {
-    char kind = 0;  // 0: the process has ended
-    std::string text;
-  };
-  [[nodiscard]] Answer answer() {
-    Answer answer;
-    std::uint64_t size = 0;
-    char kind = 0;
-    if (!read_all(end(), &kind, 1) || !read_all(end(), &size, sizeof size)) return {};
-    answer.text.resize(size);
-    if (!read_all(end(), answer.text.data(), size)) return {};
-    answer.kind = kind;
-    piece_.reset();
+  [[nodiscard]] std::string answer() {
+    std::string answer = read_answer(end());
+    if (!answer.empty()) piece_.reset();
     return answer;
   }
 
@@ -163,10 +161,10 @@ void work_in_processes(int workers, std::span<const std::size_t> pieces,
     for (std::size_t w = pool.size(); w-- > 0;) {
       if (waits_for[w].revents == 0) continue;
       const std::optional<std::size_t> piece = pool[w]->piece();
-      const Worker::Answer answer = pool[w]->answer();
-      if (answer.kind == 'f') throw FileError(answer.text);
-      if (answer.kind == 'r') {
-        hooks.on_answer(*piece, answer.text, "");
+      const std::string answer = pool[w]->answer();
+      if (answer.starts_with('f')) throw FileError(answer.substr(1));
+      if (!answer.empty()) {
+        hooks.on_answer(*piece, answer.substr(1), "");
         give(*pool[w]);
         continue;
       }

@@ -6,13 +6,13 @@
 #include "core/errors.hpp"
 #include "measure/cell_columns.hpp"
 #include "show/boundary_surface.hpp"
-#include "show/packing.hpp"
+#include "show/report_frames.hpp"
 #include "support/frames.hpp"
 #include "support/tissues.hpp"
 
 namespace {
 
-// CIE L*, a*, b* of an sRGB colour (white D65): the way back from what looks.cpp does, from CIE 15's formulas.
+// CIE L*, a*, b* of an sRGB colour (white D65), from CIE 15's formulas.
 Vec3 lab_of(const Rgb& rgb) {
   Vec3 light;
   for (int i = 0; i < 3; ++i) light[i] = rgb[i] <= 0.04045 ? rgb[i] / 12.92 : std::pow((rgb[i] + 0.055) / 1.055, 2.4);
@@ -256,11 +256,7 @@ TEST(CutByPlane, CutsASquareOutOfACube) {
   ASSERT_EQ(polygons[0].corners.size(), 4u);
   double area = 0;
   for (std::size_t i = 0; i < 4; ++i) {
-    const auto place = [&](const CutPolygon::Corner& corner) -> Vec3 {
-      return (1 - corner.part) * frame.positions[corner.first.index()] +
-             corner.part * frame.positions[corner.second.index()];
-    };
-    const Vec3 a = place(polygons[0].corners[i]), b = place(polygons[0].corners[(i + 1) % 4]);
+    const Vec3 a = polygons[0].corners[i].of(frame.positions), b = polygons[0].corners[(i + 1) % 4].of(frame.positions);
     EXPECT_DOUBLE_EQ(a.x(), 12.5);
     area += a.cross(b).x() / 2;
   }
@@ -273,8 +269,8 @@ TEST(PackedArrays, KeepsDifferencesBytePlaneByBytePlane) {
   PackedArrays arrays;
   const std::vector<std::uint16_t> small = {0x0102, 0x0304, 0x0103, 0x0300};
   const std::vector<std::uint32_t> large = {0x01020304, 0x01020303};
-  arrays.add("small", std::span<const std::uint16_t>(small), 2);
-  arrays.add("large", std::span<const std::uint32_t>(large), 1);
+  arrays.add("small", small, 2);
+  arrays.add("large", large, 1);
   // Differences: 0102 0304 0001 fffc, then 01020304 ffffffff; lowest bytes first.
   EXPECT_EQ(arrays.bytes(), std::string("\x02\x04\x01\xfc\x01\x03\x00\xff\x04\xff\x03\xff\x02\xff\x01\xff", 16));
   const auto index = arrays.index();

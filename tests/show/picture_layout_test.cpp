@@ -2,7 +2,6 @@
 #include "show/picture_layout.hpp"
 
 #include "core/errors.hpp"
-#include "show/picture_scene.hpp"
 #include "support/frames.hpp"
 #include "tissue/shapes/embryo.hpp"
 

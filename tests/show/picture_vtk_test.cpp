@@ -12,7 +12,6 @@
 #include "show/picture_layout.hpp"
 #include "show/picture_scene.hpp"
 #include "show/report.hpp"
-#include "show/report_run.hpp"
 #include "support/frames.hpp"
 #include "support/own_folder.hpp"
 #include "support/tissues.hpp"
@@ -110,12 +109,8 @@ TEST(Picture, ColoursOfASectionAreThoseOfTheLegend) {
       double value = 0;
       for (const auto& corner : polygon.corners) {
         const auto count = static_cast<double>(polygon.corners.size());
-        const auto between = [&](const auto& a, const auto& b) {
-          return ((1 - corner.part) * a + corner.part * b) / count;
-        };
-        middle += between(frame.positions[corner.first.index()], frame.positions[corner.second.index()]);
-        value += picture.field.on_nodes ? between(values[corner.first.index()], values[corner.second.index()])
-                                        : values[polygon.element] / count;
+        middle += corner.of(frame.positions) / count;
+        value += (picture.field.on_nodes ? corner.of(values) : values[polygon.element]) / count;
       }
       const auto [x, y] = pixel_of(layout, layout.panels[0], picture.rows[0].view, middle);
       EXPECT_LE(distance(image.at(x, y), colour_of(picture.field.map(), picture.range, value)), 4)
@@ -188,7 +183,7 @@ TEST(Picture, HasALegendInTheColoursOfItsMap) {
     int darkest = 255;
     for (double dy = -4; dy <= 4; ++dy)
       for (double dx = -8; dx <= 8; ++dx) {
-        const double x = label.x + dx + (label.align == Align::left ? 8 : 0);
+        const double x = label.x + dx + (label.is_centred ? 0 : 8);
         darkest = std::min(darkest, image.at(std::min(x, image.width - 1.0), label.y + dy)[1]);
       }
     EXPECT_LT(darkest, 140) << label.text;

@@ -11,7 +11,6 @@
 #include "record/results.hpp"
 #include "scenario/print.hpp"
 #include "study/quiet_run.hpp"
-#include "study/target_search.hpp"
 #include "support/own_folder.hpp"
 #include "support/scenarios.hpp"
 

@@ -1,4 +1,4 @@
-// Decoder of src/show/packing.cpp: integers as differences, byte by byte, deflated, base64.
+// Decoder of src/show/report_frames.hpp: integers as differences, byte by byte, deflated, base64.
 
 export interface ArrayEntry {
   name: string;

@@ -1,4 +1,4 @@
-// Data of the page, written by src/show/report.cpp and report_run.hpp.
+// Data of the page, written by src/show/report.cpp.
 import type { Outcomes } from "./outcomes";
 import type { ArrayEntry } from "./packed";
 

@@ -29,6 +29,16 @@ export class Table {
   }
 }
 
+/** Parse rows of texts, quoted where necessary. */
+export function csvRows(csv: string): string[][] {
+  const rows: string[][] = [];
+  for (const [, before, quoted, plain] of `\n${csv.replace(/\n$/, "")}`.matchAll(/([,\n])(?:"((?:[^"]|"")*)"|([^,\n]*))/g)) {
+    if (before === "\n") rows.push([]);
+    rows.at(-1)!.push(quoted?.replaceAll('""', '"') ?? plain);
+  }
+  return rows;
+}
+
 /** Quote a text for CSV. */
 export function csvText(text: string): string {
   return /[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;

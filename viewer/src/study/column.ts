@@ -7,7 +7,6 @@ export type Role =
 export interface ColumnEntry {
   name: string;
   role: Role;
-  numbers?: "double" | "float";
   words?: string[];
 }
 

@@ -31,8 +31,7 @@ function showHeadline(study: Study): void {
     `${took >= 7200 ? `${(took / 3600).toFixed(1)} h` : time(took)} total run time`,
   ];
   byId("headline").textContent = parts.join("; ");
-  byId("made-by").textContent = `Made by ${page.made_by}; run by plica ${page.begun_by} on ${page.processor}.` +
-    (page.columns.some(({ numbers }) => numbers === "float") ? " Output variables have seven digits here; runs.csv has all." : "");
+  byId("made-by").textContent = `Made by ${page.made_by}; run by plica ${page.begun_by} on ${page.processor}.`;
   if (page.set.length > 0) byId("headline").append(`; in all runs: ${page.set.join(", ")}`);
 }
 

@@ -1,7 +1,8 @@
-// Data of the page of a study, written by src/study/study_report.cpp: columns with one value per run.
-import { type ArrayEntry, inflate, PackedArrays } from "../packed";
+// Data of the page of a study, written by src/study/study_report.cpp: tables with one row per run.
+import { inflate } from "../packed";
+import { csvRows } from "../table";
 import { lastOf, words } from "../text";
-import { Column, type ColumnEntry, hasEnded, type Role } from "./column";
+import { Column, hasEnded, type Role } from "./column";
 import { withVerdict } from "./verdict";
 
 export interface StudyPage {
@@ -19,8 +20,7 @@ export interface StudyPage {
   runs: number;
   points: string; // directory of kept files, relative to the page
   study: string; // TOML
-  columns: ColumnEntry[];
-  arrays: ArrayEntry[];
+  measures: string[];
 }
 
 export class Study {
@@ -99,22 +99,40 @@ function tellApart(keys: Column[]): void {
 export async function readStudy(): Promise<Study> {
   const page = JSON.parse(document.getElementById("data")!.textContent!) as StudyPage;
   if (page.format !== 1) throw new Error(`the data have format ${page.format}, but this page reads format 1`);
-  const packed = new PackedArrays(await inflate(document.getElementById("rows")!.textContent!), page.arrays);
-  const columns = page.columns.map((entry, place) =>
-    new Column(entry, unpacked(entry, String(place), packed), page.log_keys.includes(entry.name)));
+  const [points, rows, kept] = await Promise.all(["points", "rows", "kept"].map(table));
+  const columns = columnsOf(page.measures, points, rows, kept)
+    .map(([name, role, texts]) => columnOf(name, role, texts, page.log_keys.includes(name)));
   return new Study(page, page.depth_word === "furrow" ? withVerdict(withoutUnfinished(columns)) : withoutUnfinished(columns));
 }
 
-function unpacked(entry: ColumnEntry, place: string, packed: PackedArrays): Float64Array {
-  if (entry.words) return Float64Array.from(packed.get(`${place}/words`), (word) => (word === 0 ? NaN : word - 1));
-  if (entry.numbers === "float") return Float64Array.from(new Float32Array(packed.get(`${place}/float`).buffer));
-  const [high, low] = [packed.get(`${place}/high`), packed.get(`${place}/low`)];
-  const values = new Float64Array(high.length);
-  const bytes = new DataView(values.buffer);
-  const isLittle = new Uint8Array(new Uint16Array([1]).buffer)[0] === 1;
-  for (let i = 0; i < high.length; ++i) {
-    bytes.setUint32(8 * i, isLittle ? low[i] : high[i], isLittle);
-    bytes.setUint32(8 * i + 4, isLittle ? high[i] : low[i], isLittle);
-  }
-  return values;
+async function table(id: string): Promise<string[][]> {
+  return csvRows(new TextDecoder().decode(await inflate(document.getElementById(id)!.textContent!)));
+}
+
+// Columns in the order of runs.csv, with the keys as in points.csv (TOML); "" if missing.
+function columnsOf(measures: string[], [head, ...points]: string[][], rows: string[][], kept: string[][]): [string, Role, string[]][] {
+  const keys = head.slice(3, -1);
+  const [statusAt, width] = [keys.length + 2, keys.length + measures.length + 6];
+  const column = (at: number, missing = "") =>
+    points.map((_, run) => (rows[run]?.length === width ? rows[run][at] : missing));
+  return [
+    ["point", "point", points.map((point) => point[1])],
+    ...keys.map((key, k): [string, Role, string[]] => [key, "key", points.map((point) => point[3 + k])]),
+    ["replicate", "replicate", points.map((point) => point[2])],
+    ["status", "status", column(statusAt, "not_run")],
+    ...measures.map((name, m): [string, Role, string[]] => [name, "measure", column(statusAt + 1 + m)]),
+    ["steps", "steps", column(width - 3)],
+    ["wall_s", "wall_s", column(width - 2)],
+    ["reason", "reason", column(width - 1)],
+    ["seeds", "seeds", points.map((point) => point.at(-1)!)],
+    ["kept", "kept", points.map((_, run) => kept[run]?.[0] ?? "")],
+  ];
+}
+
+function columnOf(name: string, role: Role, texts: string[], isLogarithmic: boolean): Column {
+  const isNumber = (text: string) => text.trim() !== "" && Number.isFinite(Number(text));
+  const isOfWords = ["status", "reason", "seeds", "kept"].includes(role) || (role === "key" && !texts.every(isNumber));
+  if (!isOfWords) return new Column({ name, role }, Float64Array.from(texts, (text) => (text === "" ? NaN : Number(text))), isLogarithmic);
+  const places = new Map([...new Set(texts)].filter((text) => text !== "").map((text, place) => [text, place]));
+  return new Column({ name, role, words: [...places.keys()] }, Float64Array.from(texts, (text) => places.get(text) ?? NaN), isLogarithmic);
 }
