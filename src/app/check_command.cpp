@@ -19,7 +19,6 @@
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
 #include "scenario/setup.hpp"
-#include "scenario/watch.hpp"
 #include "study/check_study.hpp"
 
 namespace plica {

@@ -11,7 +11,7 @@
 #include "measure/measure_set.hpp"
 #include "measure/observation.hpp"
 #include "measure/speed_history.hpp"
-#include "tissue/facing.hpp"
+#include "tissue/faces.hpp"
 #include "tissue/polygon_cell.hpp"
 
 namespace plica {

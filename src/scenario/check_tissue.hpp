@@ -1,4 +1,5 @@
-// Checks that need the tissue: missing faces, open surfaces, overlapping tables, inverted elements, empty holds.
+// Checks that need the tissue: missing faces, open surfaces, overlapping tables, inverted elements, empty holds,
+// asymmetry about mirror planes.
 #pragma once
 
 #include <string>
@@ -6,6 +7,7 @@
 
 #include "core/errors.hpp"
 #include "scenario/scenario.hpp"
+#include "tissue/mirror.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -19,5 +21,9 @@ void check_tissue(const Scenario& scenario, const Tissue& tissue);
 /// Return a warning, with the `embryo.scale` that brings cells to um, if the median cell of a file (square root of the
 /// apical area) is not 1 to 100 um wide; else nothing.
 std::string unit_warning(const EmbryoInput& embryo, const Tissue& tissue);
+
+/// Returns the solved side of the scenario's mirror planes (at least one). Throws ScenarioError if the tissue, or input
+/// on its cells and nodes, is not symmetric.
+MirroredSide mirrored_side(const Scenario& scenario, const Tissue& whole);
 
 }  // namespace plica

@@ -11,7 +11,7 @@
 
 #include "core/names.hpp"
 #include "scenario/words.hpp"
-#include "tissue/rows.hpp"
+#include "tissue/faces.hpp"
 
 namespace plica {
 namespace {
@@ -70,6 +70,10 @@ Diagnostic diagnostic_at(const Scenario& scenario, const std::string& key, std::
     if (around.find('.') == std::string::npos) break;
   }
   return {place.file, place.line, key, std::move(problem), std::move(remedy)};
+}
+
+void throw_at(const Scenario& scenario, const std::string& key, std::string problem, std::string remedy) {
+  throw ScenarioError({diagnostic_at(scenario, key, std::move(problem), std::move(remedy))});
 }
 
 Diagnostic no_array(const Scenario& scenario, const std::string& key, const std::string& array, const Tissue& tissue) {

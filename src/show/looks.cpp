@@ -10,7 +10,7 @@
 #include "core/names.hpp"
 #include "measure/cell_columns.hpp"
 #include "show/boundary_surface.hpp"
-#include "tissue/facing.hpp"
+#include "tissue/faces.hpp"
 #include "tissue/hexahedron.hpp"
 
 namespace plica {

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/version.hpp"
-#include "scenario/differences.hpp"
+#include "scenario/print.hpp"
 #include "show/looks.hpp"
 #include "show/report_page.hpp"
 #include "show/report_run.hpp"

@@ -14,9 +14,8 @@
 #include "mechanics/active/given_activities.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
-#include "scenario/remedies.hpp"
+#include "scenario/advice.hpp"
 #include "scenario/setup.hpp"
-#include "scenario/watch.hpp"
 
 namespace plica {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "measure/reference_run.hpp"
-#include "scenario/differences.hpp"
+#include "scenario/print.hpp"
 #include "study/frame_surface.hpp"
 
 namespace plica {

@@ -10,11 +10,10 @@
 #include <string>
 
 #include "scenario/builtin.hpp"
-#include "scenario/differences.hpp"
 #include "scenario/load.hpp"
 #include "scenario/schema.hpp"
 #include "scenario/suggest.hpp"
-#include "scenario/syntax.hpp"
+#include "scenario/toml_reader.hpp"
 #include "scenario/words.hpp"
 
 namespace plica {

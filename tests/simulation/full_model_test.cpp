@@ -18,7 +18,6 @@
 #include "support/small_furrow.hpp"
 #include "support/tissues.hpp"
 #include "tissue/shapes/polygon_sheet.hpp"
-#include "tissue/shapes/rectangle_polygons.hpp"
 
 namespace plica {
 namespace {

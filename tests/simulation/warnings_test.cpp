@@ -7,8 +7,8 @@
 #include <regex>
 
 #include "core/errors.hpp"
+#include "scenario/advice.hpp"
 #include "scenario/load.hpp"
-#include "scenario/remedies.hpp"
 #include "simulation/pace.hpp"
 #include "simulation/run_warnings.hpp"
 #include "simulation/simulation.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "mechanics/active/given_activities.hpp"
-#include "tissue/contractile_lines.hpp"
 #include "tissue/division.hpp"
+#include "tissue/polygon_cell.hpp"
 
 namespace plica {
 namespace {

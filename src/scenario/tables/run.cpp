@@ -2,7 +2,6 @@
 #include "core/clock.hpp"
 #include "measure/measure_set.hpp"
 #include "scenario/tables/table.hpp"
-#include "scenario/validate.hpp"
 
 namespace plica {
 namespace {

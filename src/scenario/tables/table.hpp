@@ -22,7 +22,7 @@
 #include "scenario/regions.hpp"
 #include "scenario/schema.hpp"
 #include "scenario/words.hpp"
-#include "tissue/place.hpp"
+#include "tissue/mesh_input.hpp"
 
 namespace plica {
 

@@ -22,14 +22,12 @@ std::vector<CellLattice> shell_lattices(const SurfaceGrid& coarse, const Surface
       return 1;
     };
     lattice.elements = {count(square.u), count(square.v), elements[2]};
-    for (int w = 0; w <= elements[2]; ++w)
-      for (int v = 0; v <= lattice.elements[1]; ++v)
-        for (int u = 0; u <= lattice.elements[0]; ++u) {
-          SurfaceGrid::Place place{};
-          for (int axis = 0; axis < 3; ++axis)
-            place[axis] = square.origin[axis] * ratio[axis] + u * square.u[axis] + v * square.v[axis];
-          lattice.nodes.emplace_back(w * fine.vertex_count() + fine.index(place));
-        }
+    lattice.add_nodes([&](int u, int v, int w) {
+      SurfaceGrid::Place place{};
+      for (int axis = 0; axis < 3; ++axis)
+        place[axis] = square.origin[axis] * ratio[axis] + u * square.u[axis] + v * square.v[axis];
+      return w * fine.vertex_count() + fine.index(place);
+    });
     lattices.push_back(std::move(lattice));
   }
   return lattices;
@@ -88,10 +86,8 @@ Tissue build_slice(const ShellShape& shape) {
       int face = 3;
       while (j < begins[face]) --face;
       lattice.grid_place = GridPlace{faces[face], {i, j - begins[face]}, {along, face % 2 == 0 ? belly : side}};
-      for (int w = 0; w <= nw; ++w)
-        for (int v = 0; v <= nv; ++v)
-          for (int u = 0; u <= nu; ++u)
-            lattice.nodes.emplace_back((i * nu + u) + x_nodes * ((j * nv + v) % y_nodes + y_nodes * w));
+      lattice.add_nodes(
+          [&](int u, int v, int w) { return (i * nu + u) + x_nodes * ((j * nv + v) % y_nodes + y_nodes * w); });
       lattices.push_back(std::move(lattice));
     }
   Tissue tissue = tissue_from_lattices(lattices, std::move(positions));
@@ -123,10 +119,8 @@ Tissue build_block(const BlockShape& shape) {
         lattice.has_basal = k == 0;
         lattice.has_apical = k == c - 1;
         if (lattice.has_apical) lattice.grid_place = GridPlace{GridPlace::Face::dorsal, {i, j}, {a, b}};
-        for (int w = 0; w <= nw; ++w)
-          for (int v = 0; v <= nv; ++v)
-            for (int u = 0; u <= nu; ++u)
-              lattice.nodes.emplace_back((i * nu + u) + x_nodes * ((j * nv + v) + y_nodes * (k * nw + w)));
+        lattice.add_nodes(
+            [&](int u, int v, int w) { return (i * nu + u) + x_nodes * ((j * nv + v) + y_nodes * (k * nw + w)); });
         lattices.push_back(std::move(lattice));
       }
   return tissue_from_lattices(lattices, std::move(positions));

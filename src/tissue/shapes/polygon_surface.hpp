@@ -1,13 +1,34 @@
-// Polygons that cover a surface, such as apical faces of cells, and their properties.
+// Polygons that cover a surface, such as apical faces of cells: properties, and repair of those that cannot be meshed,
+// with short edges or wide angles.
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "core/vector.hpp"
-#include "tissue/periods.hpp"
 
 namespace plica {
+
+/// Periods of a surface, which has the vertices of one period, and images at its end.
+struct Periods {
+  Vec3 length = Vec3::Zero();  // um along x, y, z; 0 if not periodic
+  // Original of each vertex, whole periods away; mostly the vertex itself. Empty: not periodic.
+  std::vector<std::size_t> originals = {};
+
+  [[nodiscard]] bool is_used() const { return !originals.empty(); }
+  [[nodiscard]] std::size_t original(std::size_t vertex) const { return is_used() ? originals[vertex] : vertex; }
+
+  /// Return the whole periods nearest to an offset.
+  [[nodiscard]] Vec3 whole(const Vec3& way) const {
+    Vec3 periods = Vec3::Zero();
+    for (int axis = 0; axis < 3; ++axis)
+      if (length[axis] > 0) periods[axis] = length[axis] * std::round(way[axis] / length[axis]);
+    return periods;
+  }
+};
 
 /// Polygon surface, closed or with boundary.
 struct PolygonSurface {
@@ -50,5 +71,40 @@ std::vector<double> edge_lengths(const PolygonSurface& surface);
 
 /// Return the number of polygons with 0, 1, 2, 3, ... corners.
 std::vector<std::size_t> corner_counts(const PolygonSurface& surface);
+
+struct PolygonOptions {
+  double least_edge = 0.15;        // relative to the mean edge length: shorter ones are lengthened
+  double largest_angle_deg = 165;  // between two sides, seen along the normal: wider ones are sharpened
+  double furthest_share = 0.1;     // largest distance of a point from the surface / its radius
+};
+
+/// Result of a repair.
+struct MendedPolygons {
+  std::size_t lengthened_edges = 0;   // edges that were too short
+  std::size_t sharpened_corners = 0;  // angles that were too wide
+  std::size_t left_edges = 0;         // still too short, for very uneven points
+  std::size_t left_corners = 0;       // still too wide
+  std::size_t passes = 0;             // number of passes over the surface; at most 60
+  double furthest_move_um = 0;        // largest displacement of a vertex
+};
+
+/// Orientation of the polygons of a surface, and admissible moves of their vertices.
+struct MendingGround {
+  Vectors normals;                                                  // polygons; unit
+  std::function<Vec3(const PolygonEdge&)> along;                    // direction of an edge, present or intended; unit
+  std::function<Vec3(std::size_t vertex, const Vec3& to)> allowed;  // admissible place nearest to `to`
+};
+
+MendedPolygons mend_polygons(const MendingGround& ground, const PolygonOptions& options, PolygonSurface& surface);
+
+/// Return remarks on the repairs; empty if none.
+std::vector<std::string> remarks_on(const MendedPolygons& mended);
+
+/// Return the defect of a polygon, seen along `normal`: "is not convex, ..." or "crosses itself"; empty if none.
+std::string polygon_flaw(const Vectors& vertices, const std::vector<std::size_t>& polygon, const Vec3& normal);
+
+/// Return the angles of a polygon at its corners, seen along `normal`, degrees: over 180 where it is not convex.
+std::vector<double> polygon_angles_deg(const Vectors& vertices, const std::vector<std::size_t>& polygon,
+                                       const Vec3& normal);
 
 }  // namespace plica

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "tissue/mesh_quality.hpp"
-#include "tissue/shapes/surface_grid.hpp"
+#include "tissue/shapes/shell_grid.hpp"
 
 namespace plica {
 namespace {

@@ -16,7 +16,6 @@
 #include "support/whole.hpp"
 #include "tissue/files/points_file.hpp"
 #include "tissue/mesh_quality.hpp"
-#include "tissue/shapes/even_points.hpp"
 #include "tissue/shapes/extrusion.hpp"
 #include "tissue/shapes/surface_polygons.hpp"
 

@@ -10,8 +10,7 @@
 #include <random>
 
 #include "support/mesh_error.hpp"
-#include "tissue/shapes/egg_surface.hpp"
-#include "tissue/shapes/solid_harmonics.hpp"
+#include "tissue/shapes/polygon_embryo.hpp"
 
 namespace plica {
 namespace {
