@@ -15,8 +15,8 @@
 #include "measure/cells.hpp"
 #include "mechanics/energy.hpp"
 #include "record/outcome.hpp"
+#include "scenario/check_tissue.hpp"
 #include "scenario/print.hpp"
-#include "scenario/regions.hpp"
 #include "scenario/words.hpp"
 #include "simulation/run_warnings.hpp"
 

@@ -7,7 +7,6 @@
 #include <functional>
 
 #include "scenario/acting.hpp"
-#include "scenario/regions.hpp"
 #include "scenario/schema.hpp"
 #include "scenario/words.hpp"
 #include "tissue/faces.hpp"

@@ -120,12 +120,10 @@ std::string in_column(const std::string& text) {
 
 std::string allowed_text(const Row& row) {
   std::string text = row.allowed.text();
-  if (!row.options.shapes.empty()) {
+  if (!row.options.shapes.empty())
     text += fmt::format("{}with shape {}", text.empty() ? "" : "; ", fmt::join(row.options.shapes, ", "));
-  }
-  if (!row.options.instead_of.empty()) {
+  if (!row.options.instead_of.empty())
     text += fmt::format("{}not with `{}`", text.empty() ? "" : "; ", row.options.instead_of);
-  }
   return text.empty() ? "any" : in_column(text);
 }
 

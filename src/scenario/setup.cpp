@@ -23,7 +23,6 @@
 #include "scenario/builtin.hpp"
 #include "scenario/check_tissue.hpp"
 #include "scenario/embryo_axes.hpp"
-#include "scenario/regions.hpp"
 #include "scenario/schema.hpp"
 #include "scenario/words.hpp"
 #include "tissue/faces.hpp"

@@ -18,6 +18,14 @@ void exchange_neighbours(PrismSheet& sheet, std::size_t cell, std::size_t other)
 /// an edge, alike at the apex and the base, and every seventh wall is turned.
 PrismSheet irregular_polygons(int columns, int rows, double edge_um, double height_um, double size, unsigned seed);
 
+/// Volume of each cell, um^3.
+inline std::vector<double> prism_volumes(const PrismSheet& sheet) {
+  const Tissue tissue = tissue_from_prisms(sheet, PolygonSplit::diagonals, 1);
+  std::vector<double> volumes;
+  for (const Cell& cell : tissue.cells) volumes.push_back(cell_volume(tissue, cell, tissue.rest_positions));
+  return volumes;
+}
+
 /// The same, bent: from a place at height z = 0 or -height to where it lies.
 template <class Place>
 PrismSheet bent(PrismSheet sheet, const Place& place) {

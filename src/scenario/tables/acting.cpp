@@ -288,10 +288,9 @@ void check_program(const std::string& table, const ProgramInput& program, Input&
   if (program.time_s.empty() && program.activity.empty()) return;
   if (program.time_s.empty()) return input.report(time, "is missing", "set time_s or time_min along with activity");
   if (program.activity.empty()) return input.report(activity, "is missing", "set activity to as many values as times");
-  if (program.time_s.size() != program.activity.size()) {
+  if (program.time_s.size() != program.activity.size())
     input.report(activity, fmt::format("has length {} for {} times", program.activity.size(), program.time_s.size()),
                  "set activity to as many values as times");
-  }
   const auto& times = program.time_s;
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (times[i] < times[i - 1])

@@ -190,30 +190,4 @@ std::vector<double> prism_heights(const PrismSheet& sheet) {
   return heights;
 }
 
-std::vector<double> prism_volumes(const PrismSheet& sheet) {
-  std::vector<double> volumes;
-  volumes.reserve(sheet.cells.size());
-  for (const auto& cell : sheet.cells) {
-    Vec3 apical_middle = Vec3::Zero(), basal_middle = Vec3::Zero();
-    for (const std::size_t vertex : cell) {
-      apical_middle += sheet.apical[vertex] / static_cast<double>(cell.size());
-      basal_middle += sheet.basal[vertex] / static_cast<double>(cell.size());
-    }
-    // By the divergence theorem, from the basal middle, so that the basal face adds nothing.
-    const auto six_volume = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
-      return (p - basal_middle).dot((q - basal_middle).cross(r - basal_middle));
-    };
-    double six_volumes = 0;
-    for (std::size_t k = 0; k < cell.size(); ++k) {
-      const std::size_t next = cell[(k + 1) % cell.size()];
-      const Vec3 &a = sheet.apical[cell[k]], &b = sheet.apical[next], &c = sheet.basal[next], &d = sheet.basal[cell[k]];
-      six_volumes += six_volume(apical_middle, a, b);
-      // A ruled face encloses the mean of what its two pairs of triangles do.
-      six_volumes += 0.5 * (six_volume(a, d, c) + six_volume(a, c, b) + six_volume(a, d, b) + six_volume(d, c, b));
-    }
-    volumes.push_back(six_volumes / 6);
-  }
-  return volumes;
-}
-
 }  // namespace plica

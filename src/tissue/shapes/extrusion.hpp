@@ -46,10 +46,6 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend
 /// Return a remark if cells are lower than requested.
 void note_lower_cells(const ExtrudedSheet& sheet, std::vector<std::string>& remarks);
 
-/// Return the volume of each prism, um^3: lateral faces ruled between apical and basal sides, faces fanned about their
-/// middles.
-std::vector<double> prism_volumes(const PrismSheet& sheet);
-
 /// Return the height of each prism: mean distance from its apical to its basal vertices, um.
 std::vector<double> prism_heights(const PrismSheet& sheet);
 

@@ -22,14 +22,8 @@ constexpr double sharpest_fold_cosine = -0.9;  // of the angle between two neigh
 constexpr double deepest_rim_angle_deg = 220;  // to which a corner of one face may go in to be no corner
 constexpr double farthest_move = 0.4;          // of the mean edge, by which mending may move a vertex
 
-Vec3 middle_of(const PolygonSurface& surface, std::size_t face) {
-  Vec3 sum = Vec3::Zero();
-  for (const std::size_t vertex : surface.polygons[face]) sum += surface.vertices[vertex];
-  return sum / static_cast<double>(surface.polygons[face].size());
-}
-
 std::string face_at(const PolygonSurface& surface, std::size_t face) {
-  return fmt::format("face {} at {}", face, place_text(middle_of(surface, face)));
+  return fmt::format("face {} at {}", face, place_text(mean_corner(surface.vertices, surface.polygons[face])));
 }
 
 void check_corners(const PolygonSurface& surface) {
@@ -202,7 +196,8 @@ std::size_t turn_faces(PolygonSurface& surface, bool mend, bool& is_closed) {
   is_closed = std::ranges::none_of(edges, [](const PolygonEdge& edge) { return edge.right == no_polygon; });
   double volume = 0;
   for (std::size_t face = 0; face < turned.size(); ++face)
-    volume += middle_of(surface, face).dot(area_vector(surface.vertices, surface.polygons[face]));
+    volume += mean_corner(surface.vertices, surface.polygons[face])
+                  .dot(area_vector(surface.vertices, surface.polygons[face]));
   if (is_closed && volume < 0) {
     for (std::size_t face = 0; face < turned.size(); ++face) turn(face);
     turned.flip();
@@ -312,7 +307,8 @@ void check_folds(const PolygonSurface& surface) {
 
 double warp_deg(const PolygonSurface& surface, std::size_t face) {
   const auto& polygon = surface.polygons[face];
-  const Vec3 middle = middle_of(surface, face), normal = area_vector(surface.vertices, polygon).normalized();
+  const Vec3 middle = mean_corner(surface.vertices, polygon),
+             normal = area_vector(surface.vertices, polygon).normalized();
   double least = 1;
   for (std::size_t k = 0; polygon.size() > 3 && k < polygon.size(); ++k) {
     const Vec3 one = (surface.vertices[polygon[k]] - middle)

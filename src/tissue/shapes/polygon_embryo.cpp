@@ -152,9 +152,6 @@ StarSurface egg_surface(const EggShape& shape) {
   const std::vector<double> weights(directions.size(), 1.0);
   return {Mat3::Identity(), half_axes, fit_harmonics(directions, radii, weights, egg_degree)};
 }
-const Eigen::VectorXd solution = rows.householderQr().solve(radii);
-return {Mat3::Identity(), half_axes, {solution.begin(), solution.end()}};
-}
 
 CellArray of_kept(const CellArray& of_faces, const std::vector<std::size_t>& kept) {
   CellArray values;

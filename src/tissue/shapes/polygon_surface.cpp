@@ -11,12 +11,6 @@
 namespace plica {
 namespace {
 
-Vec3 mean_corner(const Vectors& vertices, const std::vector<std::size_t>& polygon) {
-  Vec3 sum = Vec3::Zero();
-  for (const std::size_t vertex : polygon) sum += vertices[vertex];
-  return sum / static_cast<double>(polygon.size());
-}
-
 // One side of a polygon, to be matched with that of its neighbour.
 struct Side {
   std::size_t low, high;  // vertices
@@ -122,6 +116,12 @@ double mean_length(const std::vector<PolygonEdge>& edges, const Vectors& vertice
 }
 
 }  // namespace
+
+Vec3 mean_corner(const Vectors& vertices, const std::vector<std::size_t>& polygon) {
+  Vec3 sum = Vec3::Zero();
+  for (const std::size_t vertex : polygon) sum += vertices[vertex];
+  return sum / static_cast<double>(polygon.size());
+}
 
 Vec3 area_vector(const Vectors& vertices, const std::vector<std::size_t>& polygon) {
   const Vec3 centre = mean_corner(vertices, polygon);

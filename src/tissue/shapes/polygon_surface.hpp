@@ -45,6 +45,9 @@ struct PolygonEdge {
 
 inline constexpr std::size_t no_polygon = static_cast<std::size_t>(-1);
 
+/// Return the mean of the corners of a polygon.
+Vec3 mean_corner(const Vectors& vertices, const std::vector<std::size_t>& polygon);
+
 /// Return half the sum of (p_i - c) x (p_i+1 - c) about the mean c of the corners: the normal of the polygon times its
 /// area seen along it.
 Vec3 area_vector(const Vectors& vertices, const std::vector<std::size_t>& polygon);

@@ -13,6 +13,7 @@
 #include <numeric>
 
 #include "support/mesh_error.hpp"
+#include "support/prisms.hpp"
 #include "support/whole.hpp"
 #include "tissue/files/points_file.hpp"
 #include "tissue/mesh_quality.hpp"

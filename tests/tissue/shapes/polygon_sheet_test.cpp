@@ -11,6 +11,7 @@
 #include <span>
 
 #include "support/mesh_error.hpp"
+#include "support/prisms.hpp"
 #include "support/whole.hpp"
 #include "tissue/division.hpp"
 #include "tissue/mesh_quality.hpp"
