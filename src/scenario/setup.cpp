@@ -105,12 +105,11 @@ std::vector<double> heights_of(const Scenario& scenario, const PolygonFile& file
 
 Tissue surface_tissue(const Scenario& scenario) {
   const EmbryoInput& e = scenario.embryo;
-  const auto complain = [&](const std::string& what) { throw_at(scenario, "embryo.file", what, ""); };
   PolygonFile file;
   try {
     file = read_polygon_file(e.file);
   } catch (const FileError& error) {
-    complain(error.what());
+    throw_at(scenario, "embryo.file", error.what(), "");
   }
   const std::string advice = e.label_array.empty() ? label_advice(file) : "";
   SurfaceTissue result;
@@ -120,7 +119,8 @@ Tissue surface_tissue(const Scenario& scenario) {
         {file.surface, heights_of(scenario, file), placement_of(e), e.mend, meaning_of(words::keeps, e.keep)},
         cells_of(e));
   } catch (const MeshError& error) {
-    complain("{}: {}{}{}", e.file, error.what(), advice.empty() ? "" : "; ", advice);
+    throw_at(scenario, "embryo.file",
+             fmt::format("{}: {}{}{}", e.file, error.what(), advice.empty() ? "" : "; ", advice), "");
   }
   if (!advice.empty()) file.remarks.push_back(advice);
   for (const auto& [name, values] : file.arrays) result.tissue.cell_arrays[name] = of_kept(values, result.kept);

@@ -147,14 +147,6 @@ PolygonFan fan_about(const Vectors& vertices, const std::vector<std::size_t>& po
   return fan;
 }
 
-std::vector<double> polygon_areas(const PolygonSurface& surface) {
-  std::vector<double> areas;
-  areas.reserve(surface.polygons.size());
-  for (const auto& polygon : surface.polygons)
-    areas.push_back(fan_about(surface.vertices, polygon, mean_corner(surface.vertices, polygon)).area);
-  return areas;
-}
-
 std::vector<std::vector<std::size_t>> polygon_neighbours(const PolygonSurface& surface) {
   std::vector<std::vector<std::size_t>> neighbours;
   for (const auto& polygon : surface.polygons) neighbours.emplace_back(polygon.size(), no_polygon);
@@ -178,22 +170,6 @@ std::vector<PolygonEdge> polygon_edges(const PolygonSurface& surface) {
         edges.push_back({{polygon[k], polygon[(k + 1) % polygon.size()]}, p, neighbours[p][k]});
   }
   return edges;
-}
-
-std::vector<double> edge_lengths(const PolygonSurface& surface) {
-  std::vector<double> lengths;
-  for (const PolygonEdge& edge : polygon_edges(surface))
-    lengths.push_back((surface.vertices[edge.vertices[1]] - surface.vertices[edge.vertices[0]]).norm());
-  return lengths;
-}
-
-std::vector<std::size_t> corner_counts(const PolygonSurface& surface) {
-  std::vector<std::size_t> counts;
-  for (const auto& polygon : surface.polygons) {
-    if (counts.size() <= polygon.size()) counts.resize(polygon.size() + 1, 0);
-    ++counts[polygon.size()];
-  }
-  return counts;
 }
 
 std::vector<double> polygon_angles_deg(const Vectors& vertices, const std::vector<std::size_t>& polygon,

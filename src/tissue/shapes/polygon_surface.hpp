@@ -59,21 +59,12 @@ struct PolygonFan {
 };
 PolygonFan fan_about(const Vectors& vertices, const std::vector<std::size_t>& polygon, const Vec3& centre);
 
-/// Return the area of each polygon, um^2, from triangles about the mean of its corners.
-std::vector<double> polygon_areas(const PolygonSurface& surface);
-
 /// Return every edge once, in order of polygons. MeshError if an edge runs the same way in two polygons or belongs to
 /// more than two.
 std::vector<PolygonEdge> polygon_edges(const PolygonSurface& surface);
 
 /// Return the polygons across the sides of each, in order of its sides; no_polygon at a boundary.
 std::vector<std::vector<std::size_t>> polygon_neighbours(const PolygonSurface& surface);
-
-/// Return the lengths of the edges, um.
-std::vector<double> edge_lengths(const PolygonSurface& surface);
-
-/// Return the number of polygons with 0, 1, 2, 3, ... corners.
-std::vector<std::size_t> corner_counts(const PolygonSurface& surface);
 
 struct PolygonOptions {
   double least_edge = 0.15;        // relative to the mean edge length: shorter ones are lengthened

@@ -10,7 +10,6 @@
 #include <set>
 
 #include "tissue/mesh_quality.hpp"
-#include "tissue/shapes/shell_grid.hpp"
 
 namespace plica {
 namespace {
