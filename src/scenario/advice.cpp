@@ -320,7 +320,7 @@ void advise_on_effects(const Scenario& scenario, const Model& model, Messages& o
     out.warn("time.step_s: the time step is longer than the run; reduce step_s or increase end_s");
 }
 
-// Says what elasticity, volumes and time steps imply.
+// Notes on elasticity, volumes and time steps.
 void advise_on_solver(const Scenario& scenario, const Model& model, Messages& out) {
   advise_on_profiles(scenario, model.tissue, out);
   advise_on_abrupt_loads(scenario, model.tissue, out);
@@ -353,7 +353,7 @@ void advise_on_solver(const Scenario& scenario, const Model& model, Messages& ou
   }
 }
 
-// Says where the vitelline membrane is.
+// Notes on the vitelline membrane.
 void advise_on_shell(const Scenario& scenario, const Tissue& tissue, Messages& out) {
   if (scenario.vitelline.enabled && scenario.vitelline.gap_um > 0)
     out.note("the initial gap to the vitelline membrane is {} um", scenario.vitelline.gap_um);
@@ -371,7 +371,7 @@ void advise_on_shell(const Scenario& scenario, const Tissue& tissue, Messages& o
   }
 }
 
-// Says where the furrow is measured.
+// Warns of units and of a furrow that is not measured where cells contract.
 void advise_on_furrow(const Scenario& scenario, const Tissue& tissue, Messages& out) {
   if (const std::string text = unit_warning(scenario.embryo, tissue); !text.empty()) out.warn("{}", text);
   for (const std::string& remark : tissue.remarks) out.note("{}", remark);
@@ -396,7 +396,7 @@ void advise_on_furrow(const Scenario& scenario, const Tissue& tissue, Messages& 
                is_furrow ? "furrow depth, furrow lips and VML have" : "the fold depth has");
 }
 
-// Describes the mesh.
+// Notes on the mesh.
 void advise_on_mesh(const Scenario& scenario, const Tissue& tissue, Messages& out) {
   const MeshQuality quality = mesh_quality(tissue, tissue.rest_positions);
   out.note("{} cells, {} elements, {} nodes; cell volume {:.0f} to {:.0f} um3, apical area {:.0f} to {:.0f} um2",
