@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "scenario/default_shell.hpp"
+#include "scenario/setup.hpp"
 #include "targets.hpp"
 
 // Whether a mesh is closed takes the tissue itself, which is not fuzzed here.

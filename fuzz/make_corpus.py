@@ -102,13 +102,14 @@ def items(form, values):
 
 
 def mesh(points, cells, faces, arrays=(), groups=((), (), (), (), ())):
-    """Encode as tissue/files/child_reading.cpp."""
+    """Encode as tissue/files/child_reading.hpp, without remarks."""
     data = items("3d", points) + items("8i", cells)
     for numbers in (faces, *groups):
         data += items("i", [(number,) for number in numbers])
+    data += items("Q", [(len(arrays),)])
     for name, values in arrays:
         data += struct.pack("<Q", len(name)) + name + items("d", [(value,) for value in values])
-    return data
+    return data + items("Q", [(0,)])
 
 
 def meshes():

@@ -26,7 +26,7 @@ bool fuzz_mesh(std::string_view bytes) try {
   if (bytes.empty()) return false;
   const int across = 1 + (bytes.front() & 3), radial = 1 + (bytes.front() >> 2 & 3);
   bytes.remove_prefix(1);
-  check(tissue_from_mesh(mesh_from_bytes(bytes), {across, across, radial}));
+  check(tissue_from_mesh(from_bytes<HexahedralMesh>(bytes), {across, across, radial}));
   return true;
 } catch (const MeshError&) {
   return false;

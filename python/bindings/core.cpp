@@ -20,7 +20,6 @@
 #include "record/results.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/builtin.hpp"
-#include "scenario/default_shell.hpp"
 #include "scenario/print.hpp"
 #include "scenario/setup.hpp"
 #include "show/looks.hpp"

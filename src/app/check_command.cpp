@@ -18,6 +18,7 @@
 #include "scenario/setup.hpp"
 #include "scenario/watch.hpp"
 #include "study/run_study.hpp"
+#include "study/check_study.hpp"
 
 namespace plica {
 namespace {

@@ -11,6 +11,8 @@
 #include "measure/measure_set.hpp"
 #include "measure/observation.hpp"
 #include "tissue/facing.hpp"
+#include "measure/speed_history.hpp"
+#include "tissue/faces.hpp"
 #include "tissue/polygon_cell.hpp"
 
 namespace plica {

@@ -11,7 +11,7 @@
 #include "measure/cross_section.hpp"
 #include "measure/energy_norm.hpp"
 #include "mechanics/energy.hpp"
-#include "tissue/part.hpp"
+#include "tissue/mirror.hpp"
 
 namespace plica {
 namespace {

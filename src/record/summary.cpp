@@ -17,8 +17,9 @@
 #include "mechanics/energy.hpp"
 #include "record/results.hpp"
 #include "scenario/embryo_axes.hpp"
+#include "record/outcome.hpp"
+#include "scenario/check_tissue.hpp"
 #include "scenario/print.hpp"
-#include "scenario/regions.hpp"
 #include "scenario/words.hpp"
 #include "simulation/run_warnings.hpp"
 

@@ -1,14 +1,16 @@
 // Tables whose cells act (elasticity.NAME, contraction.NAME, cortex.NAME, pressure.NAME): a view of each, and its
-// pattern on a tissue with resolved regions.
+// pattern on a tissue with resolved regions; per-cell and per-element inputs as arrays.
 #pragma once
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "mechanics/active/cell_pattern.hpp"
 #include "scenario/scenario.hpp"
 #include "tissue/mirror.hpp"
+#include "tissue/tissue.hpp"
 
 namespace plica {
 
@@ -71,5 +73,16 @@ struct ElasticMaterial {
 /// Elastic properties by element of `tissue`, the solved part: of [elasticity], or of [elasticity.NAME]. Omits profiles
 /// by an array that the tissue lacks.
 std::vector<ElasticMaterial> elastic_materials(const Scenario& scenario, const Origin& origin, const Tissue& tissue);
+
+using NamedArrays = std::vector<std::pair<std::string, std::vector<double>>>;
+
+struct RestArrays {
+  NamedArrays cells;     // the tissue's arrays; strength_TABLE.NAME; if used, delay_s_ and pulse_phase_TABLE.NAME
+  NamedArrays elements;  // young_modulus_Pa and poisson_ratio, if [elasticity.NAME] changes them
+};
+
+/// Collects the arrays on a tissue with resolved regions. Omits profiles by an array that the tissue lacks, and arrays
+/// that are not finite in every cell.
+RestArrays rest_arrays(const Scenario& scenario, const Tissue& tissue);
 
 }  // namespace plica

@@ -32,7 +32,7 @@ struct Input {
     return found == places.end() ? nullptr : &found->second;
   }
 
-  [[nodiscard]] bool sound(const std::string& address) const { return !doubtful.contains(address); }
+  [[nodiscard]] bool sound(const auto&... addresses) const { return (!doubtful.contains(addresses) && ...); }
 
   /// Whether `address` was set in the same layer as `chooser` or later, so it cannot belong to another, inherited
   /// choice.

@@ -9,11 +9,11 @@
 #include "core/files.hpp"
 #include "core/names.hpp"
 #include "scenario/builtin.hpp"
-#include "scenario/default_shell.hpp"
 #include "scenario/read_layer.hpp"
+#include "scenario/setup.hpp"
 #include "scenario/suggest.hpp"
-#include "scenario/syntax.hpp"
-#include "scenario/validate.hpp"
+#include "scenario/toml_reader.hpp"
+#include "scenario/words.hpp"
 
 namespace plica {
 namespace {
@@ -57,12 +57,8 @@ std::optional<ScenarioSource> find_base(const Document& document, const std::vec
 std::vector<Document> read_documents(const ScenarioSource& source, std::vector<Diagnostic>& diagnostics) {
   std::vector<Document> chain;
   for (std::optional<ScenarioSource> next = source; next;) {
-    if (const int line = line_of_too_deep_key(next->text); line > 0) {
-      diagnostics.push_back({next->file, line, "", "a key has too many parts", "use at most four parts"});
-      break;
-    }
     try {
-      chain.push_back({*next, toml::parse(next->text)});
+      chain.push_back({*next, parse_toml(next->file, next->text)});
       const toml::table& table = chain.back().table;
       const bool is_study = table.contains("vary") && table.contains("design");
       if (is_study || table.contains("experiment")) {
@@ -79,18 +75,13 @@ std::vector<Document> read_documents(const ScenarioSource& source, std::vector<D
                                fmt::format("use at most {}", most_bases)});
         break;
       }
-    } catch (const toml::parse_error& error) {
-      diagnostics.push_back(syntax_diagnostic(next->file, next->text, error));
+    } catch (const ScenarioError& error) {
+      diagnostics.push_back(error.diagnostics().front());
       break;
     }
   }
   std::ranges::reverse(chain);
   return chain;
-}
-
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" \t");
-  return begin == std::string::npos ? "" : text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
 /// Whether the key takes a text, whose quotes the shell may have removed.
@@ -181,6 +172,62 @@ void sort_diagnostics(std::vector<Diagnostic>& diagnostics, const std::vector<Do
   std::ranges::stable_sort(diagnostics, {}, rank);
 }
 
+/// Replaces "automatic" by the value that fits the scenario. Call on a valid scenario.
+void resolve_automatic(Scenario& scenario) {
+  const bool may_invert = !is_of_grid(shape_of(scenario.embryo)) || !scenario.divisions.empty();
+  if (!scenario.elasticity.corner_barrier_Pa)
+    scenario.elasticity.corner_barrier_Pa =
+        may_invert && !is_as_in_the_paper(scenario) ? scenario.elasticity.young_modulus_Pa / 10 : 0;
+  if (scenario.time.integrator == "automatic")
+    scenario.time.integrator = what_bars_second_order(scenario).empty() ? "bdf2" : "backward-euler";
+}
+
+void check_required_keys(const ScenarioTable& info, const Scenario& scenario, Input& input) {
+  const std::vector<std::string> names = info.named() ? info.names(scenario) : std::vector<std::string>();
+  for (const std::string& name : names) {
+    const std::string path = fmt::format("{}.{}", info.stem(), name);
+    for (const Row& row : info.rows) {
+      const std::string address = fmt::format("{}.{}", path, row.key);
+      if (!row.options.required || !input.sound(path) || input.place(address) != nullptr) continue;
+      // A misspelt table name is a frequent cause.
+      std::vector<std::string> others = names;
+      std::erase(others, name);
+      const std::optional<std::string> meant = nearest_name(name, others);
+      input.report(
+          address, "is missing",
+          row.remedy() +
+              (meant ? fmt::format(", or rename the table to {}.{} (nearest match)", info.stem(), *meant) : ""));
+    }
+  }
+}
+
+void check_region(const std::string& address, const std::string& region, const Scenario& scenario, Input& input) {
+  if (region.empty() || region == "all" || scenario.regions.contains(region)) return;
+  if (!input.sound("region") || !input.sound(address)) return;
+  if (!input.sound("region." + region)) return;  // not read; already reported
+  std::vector<std::string> names = keys_of(scenario.regions);
+  names.insert(names.begin(), "all");
+  std::string remedy = did_you_mean(region, names);
+  if (input.sound("embryo.shape") && is_from_file(shape_of(scenario.embryo)))
+    remedy += fmt::format("; if it is an array of the file, add [region.{0}] with array = \"{0}\"", region);
+  input.report(address, fmt::format("region \"{}\" does not exist", region), remedy);
+}
+
+/// Reports inconsistent keys to `input` and sets defaults that depend on other keys: fields that the embryo's shape
+/// does not use, the length of a sphere (its diameter), the vitelline membrane of a block (none), values that are
+/// "automatic".
+void validate(Scenario& scenario, Input& input) {
+  for (const ScenarioTable& table : scenario_tables()) check_required_keys(table, scenario, input);
+  for (const ScenarioTable& table : scenario_tables())
+    if (table.rules) table.rules(scenario, input);
+  const auto check = [&](const std::string& address, const std::string& region) {
+    check_region(address, region, scenario, input);
+  };
+  for (const ScenarioTable& table : scenario_tables())
+    if (table.regions) table.regions(scenario, check);
+  if (input.diagnostics.empty()) resolve_automatic(scenario);
+}
+
 }  // namespace
 
 ScenarioSource find_scenario(const std::string& name_or_path, const fs::path& beside) {
@@ -189,10 +236,9 @@ ScenarioSource find_scenario(const std::string& name_or_path, const fs::path& be
   }
   const fs::path path(name_or_path);
   std::error_code error;
-  if (!fs::exists(path, error)) {
+  if (!fs::exists(path, error))
     throw UsageError(fmt::format("\"{}\" is neither a built-in scenario nor a file; {}", name_or_path,
                                  nearest_scenario(path, beside)));
-  }
   return {path.stem().string(), name_or_path, read_file(path, largest_scenario_bytes)};
 }
 

@@ -2,14 +2,44 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <ranges>
+#include <sstream>
 
 #include "scenario/schema.hpp"
 
 namespace plica {
+namespace {
+
+using Values = std::map<std::string, std::string>;  // by dotted key
+
+void flatten(const toml::table& table, const std::string& path, Values& values) {
+  for (const auto& [key, node] : table) {
+    const std::string here = path + std::string(key.str());
+    if (const toml::table* inner = node.as_table()) {
+      flatten(*inner, here + ".", values);
+      continue;
+    }
+    std::ostringstream text;
+    node.visit([&](const auto& value) { text << value; });
+    values[here] = text.str();
+  }
+}
+
+Values values_of(std::string_view text) {
+  Values values;
+  try {
+    flatten(toml::parse(text), "", values);
+  } catch (const toml::parse_error&) {
+  }
+  return values;
+}
+
+}  // namespace
 
 std::string in_toml(const std::string& text) {
   std::string quoted = "\"";
@@ -90,12 +120,10 @@ std::string in_column(const std::string& text) {
 
 std::string allowed_text(const Row& row) {
   std::string text = row.allowed.text();
-  if (!row.options.shapes.empty()) {
+  if (!row.options.shapes.empty())
     text += fmt::format("{}with shape {}", text.empty() ? "" : "; ", fmt::join(row.options.shapes, ", "));
-  }
-  if (!row.options.instead_of.empty()) {
+  if (!row.options.instead_of.empty())
     text += fmt::format("{}not with `{}`", text.empty() ? "" : "; ", row.options.instead_of);
-  }
   return text.empty() ? "any" : in_column(text);
 }
 
@@ -236,6 +264,16 @@ std::string reference_markdown() {
   for (const InnerTables& inner : inner_tables())
     text += section_of(std::string(inner.title), inner.meaning) + key_table(rows_of_inner(inner));
   return text;
+}
+
+std::vector<KeyDifference> scenario_differences(std::string_view a, std::string_view b) {
+  std::map<std::string, KeyDifference> all;
+  for (const auto& [key, value] : values_of(a)) all[key].a = value;
+  for (const auto& [key, value] : values_of(b)) all[key].b = value;
+  std::vector<KeyDifference> differences;
+  for (const auto& [key, values] : all)
+    if (values.a != values.b) differences.push_back({key, values.a, values.b});
+  return differences;
 }
 
 }  // namespace plica

@@ -1,7 +1,9 @@
-// Output of a scenario as TOML, and of the reference page of all keys.
+// Output of a scenario as TOML, of its differences from another, and of the reference page of all keys.
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "scenario/scenario.hpp"
 
@@ -19,5 +21,14 @@ std::string float_in_toml(double value);
 /// Writes docs/reference/scenario.md: keys, types, defaults, allowed values and meanings by table. Inner tables that
 /// several tables share (profile, program, ...) have one section each, linked from these tables.
 std::string reference_markdown();
+
+/// Dotted key and its two values in TOML; empty where a scenario lacks the key.
+struct KeyDifference {
+  std::string key, a, b;
+};
+
+/// Compares two resolved scenarios (scenario.toml of a run) and returns differing keys in alphabetical order. Invalid
+/// TOML counts as empty.
+std::vector<KeyDifference> scenario_differences(std::string_view a, std::string_view b);
 
 }  // namespace plica

@@ -66,9 +66,8 @@ Problem read(const toml::node& node, const Row& row, std::string& target) {
   if (!value) return wrong_type(node);
   if (value->empty()) return "the text is empty";
   const auto& words = row.allowed.words;
-  if (!words.empty() && std::ranges::find(words, *value) == words.end()) {
+  if (!words.empty() && std::ranges::find(words, *value) == words.end())
     return fmt::format("\"{}\" is unknown", *value);
-  }
   target = *value;
   return {};
 }
@@ -161,17 +160,14 @@ Suggestion suggest_key(const std::string& table, const std::string& path, const 
     if (known.empty() || known.back() != name) known.push_back(name);
     if (without_unit(row.key) == without_unit(key)) same_stem.push_back(fmt::format("\"{}\"", row.key));
   }
-  if (!same_stem.empty()) {
+  if (!same_stem.empty())
     return {fmt::format("use {} and convert the value to that unit", fmt::join(same_stem, " or ")), path};
-  }
   if (table.empty()) {
     for (const ScenarioTable& info : scenario_tables()) {
       if (!info.path.empty() && known.back() != info.stem()) known.emplace_back(info.stem());
     }
   }
-  if (const auto nearest = nearest_name(key, known)) {
-    return {did_you_mean(key, known), table.empty() ? *nearest : path};
-  }
+  if (const auto nearest = nearest_name(key, known)) return {did_you_mean(key, known), table.empty() ? *nearest : path};
   for (const ScenarioTable& info : scenario_tables())
     if (std::ranges::any_of(info.rows, [&](const Row& row) { return row.key == key; }))
       return {fmt::format("move it to [{}{}]", info.stem(), info.named() ? ".NAME" : ""), ""};

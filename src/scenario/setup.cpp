@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <functional>
+#include <iterator>
 #include <set>
 
 #include "core/errors.hpp"
 #include "core/names.hpp"
 #include "core/units.hpp"
 #include "measure/cells.hpp"
+#include "measure/measure_set.hpp"
 #include "mechanics/constraints/ties.hpp"
 #include "mechanics/obstacles/shell_drag.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
@@ -19,15 +22,13 @@
 #include "scenario/acting.hpp"
 #include "scenario/builtin.hpp"
 #include "scenario/check_tissue.hpp"
-#include "scenario/regions.hpp"
+#include "scenario/embryo_axes.hpp"
 #include "scenario/schema.hpp"
-#include "scenario/symmetry.hpp"
 #include "scenario/words.hpp"
 #include "tissue/faces.hpp"
-#include "tissue/files/labelled_faces.hpp"
-#include "tissue/files/mesh_file.hpp"
 #include "tissue/files/points_file.hpp"
 #include "tissue/files/polygon_file.hpp"
+#include "tissue/hexahedral_mesh.hpp"
 #include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 #include "tissue/shapes/polygon_sheet.hpp"
@@ -48,7 +49,7 @@ Tissue read_tissue(const Scenario& scenario) {
     if (scenario.vitelline.enabled) tissue.outer_shape = enclosing_capsule(tissue.rest_positions);
     return tissue;
   } catch (const MeshError& error) {
-    throw ScenarioError({diagnostic_at(scenario, "embryo.file", error.what(), "")});
+    throw_at(scenario, "embryo.file", error.what(), "");
   }
 }
 
@@ -59,7 +60,7 @@ PointTable table_of(const std::string& file) {
     names.push_back(fmt::format("{}{}", builtin_table_mark, table.name));
     if (names.back() == file) return points_in_csv(table.csv);
   }
-  throw MeshError(fmt::format("table {} does not exist; use one of: {}", file, fmt::join(names, ", ")));
+  throw MeshError("table {} does not exist; use one of: {}", file, fmt::join(names, ", "));
 }
 
 PolygonCells cells_of(const EmbryoInput& e) { return {e.cell_height_um, split_of(e), e.layers, e.least_edge_ratio}; }
@@ -82,8 +83,7 @@ Tissue polygonal_tissue(const Scenario& scenario) {
     tissue.remarks.insert(tissue.remarks.end(), table.remarks.begin(), table.remarks.end());
     return tissue;
   } catch (const FileError& error) {
-    throw ScenarioError(
-        {diagnostic_at(scenario, is_from_file(shape_of(e)) ? "embryo.file" : "embryo", error.what(), "")});
+    throw_at(scenario, is_from_file(shape_of(e)) ? "embryo.file" : "embryo", error.what(), "");
   }
 }
 
@@ -93,28 +93,23 @@ std::vector<double> heights_of(const Scenario& scenario, const PolygonFile& file
   if (const auto found = file.arrays.find(name); found != file.arrays.end()) {
     const auto missing = std::ranges::find_if(found->second, [](double height) { return std::isnan(height); });
     if (missing == found->second.end()) return found->second;
-    throw ScenarioError(
-        {diagnostic_at(scenario, "embryo.cell_height_array",
-                       fmt::format("array \"{}\" has no value in face {}", name, missing - found->second.begin()),
-                       "provide a height for every face")});
+    throw_at(scenario, "embryo.cell_height_array",
+             fmt::format("array \"{}\" has no value in face {}", name, missing - found->second.begin()),
+             "provide a height for every face");
   }
   const std::string remedy =
       file.arrays.empty() ? "remove cell_height_array, since the file has none"
                           : fmt::format("set cell_height_array to one of: {}", fmt::join(keys_of(file.arrays), ", "));
-  throw ScenarioError(
-      {diagnostic_at(scenario, "embryo.cell_height_array", fmt::format("the file has no array \"{}\"", name), remedy)});
+  throw_at(scenario, "embryo.cell_height_array", fmt::format("the file has no array \"{}\"", name), remedy);
 }
 
 Tissue surface_tissue(const Scenario& scenario) {
   const EmbryoInput& e = scenario.embryo;
-  const auto complain = [&](const std::string& what) {
-    throw ScenarioError({diagnostic_at(scenario, "embryo.file", what, "")});
-  };
   PolygonFile file;
   try {
     file = read_polygon_file(e.file);
   } catch (const FileError& error) {
-    complain(error.what());
+    throw_at(scenario, "embryo.file", error.what(), "");
   }
   const std::string advice = e.label_array.empty() ? label_advice(file) : "";
   SurfaceTissue result;
@@ -124,14 +119,15 @@ Tissue surface_tissue(const Scenario& scenario) {
         {file.surface, heights_of(scenario, file), placement_of(e), e.mend, meaning_of(words::keeps, e.keep)},
         cells_of(e));
   } catch (const MeshError& error) {
-    complain(fmt::format("{}: {}{}{}", e.file, error.what(), advice.empty() ? "" : "; ", advice));
+    throw_at(scenario, "embryo.file",
+             fmt::format("{}: {}{}{}", e.file, error.what(), advice.empty() ? "" : "; ", advice), "");
   }
   if (!advice.empty()) file.remarks.push_back(advice);
   for (const auto& [name, values] : file.arrays) result.tissue.cell_arrays[name] = of_kept(values, result.kept);
   result.tissue.remarks.insert(result.tissue.remarks.begin(), file.remarks.begin(), file.remarks.end());
   if (scenario.vitelline.enabled && !result.tissue.outer_shape)
-    throw ScenarioError({diagnostic_at(scenario, "vitelline.enabled",
-                                       "no vitelline membrane fits: " + result.why_no_shape, "set enabled to false")});
+    throw_at(scenario, "vitelline.enabled", "no vitelline membrane fits: " + result.why_no_shape,
+             "set enabled to false");
   return std::move(result.tissue);
 }
 
@@ -163,10 +159,9 @@ void add_arrays(const Scenario& scenario, Tissue& tissue) {
   const auto add = [&](const std::map<std::string, CellArray>& arrays, const std::string& whose) {
     for (const auto& [name, values] : arrays)
       if (values.size() != tissue.cells.size())
-        throw ScenarioError({diagnostic_at(
-            scenario, "embryo.cell_arrays",
-            fmt::format("{} {} values for {} cells", whose, values.size(), tissue.cells.size()),
-            "give one per cell, in the order of cell_id; `plica mesh` writes the cells with their positions")});
+        throw_at(scenario, "embryo.cell_arrays",
+                 fmt::format("{} {} values for {} cells", whose, values.size(), tissue.cells.size()),
+                 "give one per cell, in the order of cell_id; `plica mesh` writes the cells with their positions");
       else
         tissue.cell_arrays[name] = values;
   };
@@ -174,7 +169,7 @@ void add_arrays(const Scenario& scenario, Tissue& tissue) {
   try {
     if (!file.empty()) add(read_cell_table(file), file + " has");
   } catch (const FileError& error) {
-    throw ScenarioError({diagnostic_at(scenario, "embryo.cell_arrays", error.what(), "")});
+    throw_at(scenario, "embryo.cell_arrays", error.what(), "");
   }
   add(scenario.embryo.arrays, "an array given has");
 }
@@ -210,10 +205,10 @@ void check_forces_at_rest(const Scenario& scenario, const Model& model) {
   const auto holds_it = [&](const auto& nodes) { return std::ranges::find(nodes, node) != nodes.end(); };
   const auto element = std::ranges::find_if(model.tissue.elements, holds_it) - model.tissue.elements.begin();
   const std::string key = scenario.contractions.empty() ? "elasticity" : "contraction";
-  throw ScenarioError({diagnostic_at(scenario, key,
-                                     fmt::format("the force in cell {} is not finite in the reference state",
-                                                 model.tissue.element_cell[static_cast<std::size_t>(element)].number()),
-                                     "reduce stiffness, pre-tension or pressure")});
+  throw_at(scenario, key,
+           fmt::format("the force in cell {} is not finite in the reference state",
+                       model.tissue.element_cell[static_cast<std::size_t>(element)].number()),
+           "reduce stiffness, pre-tension or pressure");
 }
 
 /// Adds all force laws, constraints and obstacles of a scenario.
@@ -239,6 +234,79 @@ void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model)
           tissue, shell, scenario.vitelline.drag_Pa_s_per_um * units::pascal_second_per_um));
   }
   check_forces_at_rest(scenario, model);
+}
+
+bool is_closed(const Scenario& scenario) try {
+  const Tissue tissue = make_tissue(scenario);
+  return encloses(tissue, tissue.apical_facets);
+} catch (const std::exception&) {
+  return true;  // no tissue: the reason comes where it is made
+}
+
+void open_reference(const MonitorInput& input, Monitor& monitor) {
+  const QuantityInfo::Reference kind = info_of(monitor.quantity).reference;
+  if (kind == QuantityInfo::Reference::run) {
+    const auto at = meaning_of(words::reference_times, input.reference_at, Monitor::ReferenceAt::same_time);
+    monitor.reference_run = std::make_shared<ReferenceRun>(input.reference);
+    if (at == Monitor::ReferenceAt::end) monitor.reference_frame = monitor.reference_run->last_frame();
+  }
+  if (kind == QuantityInfo::Reference::surface)
+    monitor.reference_surface = std::make_shared<SurfaceDistance>(read_surface(input.reference));
+}
+
+Monitor make_monitor(const std::string& name, const MonitorInput& input, const Scenario& scenario) {
+  Monitor monitor;
+  monitor.name = name;
+  monitor.quantity = quantity_named(input.quantity)->quantity;
+  monitor.region = input.region;
+  monitor.from = input.from;
+  monitor.face = meaning_of(words::monitor_faces, input.face, monitor.face);
+  if (!input.axis.empty()) monitor.axis = meaning_of(words::axes, input.axis);
+  monitor.over = meaning_of(words::overs, input.over, monitor.over);
+  monitor.at_s = input.at_s;
+  monitor.poisson_ratio = scenario.elasticity.poisson_ratio;
+  open_reference(input, monitor);
+  return monitor;
+}
+
+bool reads_something(const Monitor& monitor, const Tissue& tissue) {
+  const QuantityInfo::Of of = info_of(monitor.quantity).of;
+  return of == QuantityInfo::Of::node ? !monitored_nodes(monitor, tissue).empty()
+                                      : !monitored_cells(monitor, tissue).empty();
+}
+
+StopRule make_stop_rule(const Scenario& scenario) {
+  StopRule rule;
+  rule.all = meaning_of(words::combinations, scenario.stop.combine);
+  rule.needs_rest = scenario.stop.at_equilibrium;
+  for (const auto& [name, input] : scenario.criteria) {
+    Criterion criterion;
+    criterion.name = name;
+    const auto monitor = scenario.monitors.find(input.monitor);
+    criterion.monitor = static_cast<std::size_t>(std::distance(scenario.monitors.begin(), monitor));
+    criterion.above = input.above;
+    criterion.below = input.below;
+    criterion.over = meaning_of(words::criterion_overs, input.over, criterion.over);
+    rule.criteria.push_back(std::move(criterion));
+  }
+  return rule;
+}
+
+void begin_sets(const Scenario& scenario, const Model& model, KeptBySet& kept, std::vector<Diagnostic>& errors) {
+  const Subject subject{model, make_furrow_sites(scenario, model.tissue), have_furrow(axes_of(scenario.embryo)),
+                        method_of(scenario.volume) == VolumeMethod::projection};
+  const auto is_given = [&](std::string_view name) { return std::ranges::count(scenario.measure.sets, name) > 0; };
+  for (const MeasureSet& set : measure_sets()) {
+    const bool is_usual = is_given("automatic") && (!set.is_usual || set.is_usual(subject));
+    if ((is_given(set.name) || is_usual) && !begin(set, subject, kept) && is_given(set.name))
+      errors.push_back(diagnostic_at(scenario, "measure.sets",
+                                     fmt::format("\"{}\" has nothing to measure without {}", set.name, set.needs),
+                                     "remove it, or supply what it needs"));
+  }
+  for (const Column* column : all_columns())
+    if (scenario.expect.contains(std::string(column->name)) && !column->set.empty() && !kept.contains(column->set))
+      errors.push_back(
+          diagnostic_at(scenario, fmt::format("expect.{}", column->name), "is not measured", set_remedy(column->name)));
 }
 
 }  // namespace
@@ -291,12 +359,43 @@ FurrowSites make_furrow_sites(const Scenario& scenario, const Tissue& tissue) {
   if (region.empty()) return choose_furrow_sites(tissue, CellSet(tissue.cells.size(), false), 1);
   FurrowSites sites = choose_furrow_sites(tissue, tissue.regions.at(region), scenario.furrow.vce_cell.value_or(2));
   if (scenario.furrow.vce_cell > sites.midline_pairs && sites.midline_pairs > 0)
-    throw ScenarioError(
-        {diagnostic_at(scenario, "furrow.vce_cell",
-                       fmt::format("the midline of region \"{}\" has only {} cells from an end to the middle", region,
-                                   sites.midline_pairs),
-                       "reduce vce_cell; 1 is the last cell")});
+    throw_at(scenario, "furrow.vce_cell",
+             fmt::format("the midline of region \"{}\" has only {} cells from an end to the middle", region,
+                         sites.midline_pairs),
+             "reduce vce_cell; 1 is the last cell");
   return sites;
+}
+
+void set_default_shell(Scenario& scenario) {
+  if (shape_of(scenario.embryo) != EmbryoShape::file || scenario.given_at.contains("vitelline.enabled")) return;
+  scenario.vitelline.enabled = is_closed(scenario);
+  if (scenario.vitelline.enabled) return;
+  if (scenario.vitelline.drag_Pa_s_per_um > 0)
+    throw_at(scenario, "vitelline.drag_Pa_s_per_um",
+             "is not used without a vitelline membrane, and an open tissue has none by default",
+             "remove drag_Pa_s_per_um, or set vitelline.enabled to true");
+}
+
+Watch make_watch(const Scenario& scenario, const Model& model) {
+  Watch watch;
+  std::vector<Diagnostic> errors;
+  begin_sets(scenario, model, watch.sets, errors);
+  const Tissue& tissue = model.tissue;
+  for (const auto& [name, input] : scenario.monitors) {
+    const std::string path = "monitor." + name;
+    try {
+      watch.monitors.push_back(make_monitor(name, input, scenario));
+      if (!reads_something(watch.monitors.back(), tissue))
+        errors.push_back(diagnostic_at(scenario, path + ".face",
+                                       fmt::format("no cell of region \"{}\" has this face", input.region),
+                                       "change region or face"));
+    } catch (const FileError& error) {
+      errors.push_back(diagnostic_at(scenario, path + ".reference", error.what(), "set reference to another file"));
+    }
+  }
+  if (!errors.empty()) throw ScenarioError(std::move(errors));
+  watch.stop = make_stop_rule(scenario);
+  return watch;
 }
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// Construction of the model of a scenario, and of the sites where the furrow is measured.
+// Construction of the model of a scenario, and of what its run measures and when it stops.
 #pragma once
 
 #include <memory>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "measure/furrow.hpp"
+#include "measure/observation.hpp"
 #include "mechanics/model.hpp"
 #include "scenario/scenario.hpp"
 #include "tissue/mirror.hpp"
@@ -36,5 +37,14 @@ std::vector<std::string> contracting_regions(const Scenario& scenario, const Tis
 
 /// VML, VCE, midline and lips of the scenario's furrow; empty without contraction.
 FurrowSites make_furrow_sites(const Scenario& scenario, const Tissue& tissue);
+
+/// Sets `vitelline.enabled` of shape "file", unless given, to whether the tissue is closed: its apical surface has no
+/// boundary, that is, every edge of it belongs to two facets. Reads the mesh; its errors are left to make_tissue.
+/// Throws ScenarioError if an open tissue is given a drag along the membrane.
+void set_default_shell(Scenario& scenario);
+
+/// Begins the measure sets, makes monitors in the order of their names, opens their references, and makes the stop
+/// criteria. `model`: of the whole tissue. Throws ScenarioError for errors that depend on the tissue or on files.
+Watch make_watch(const Scenario& scenario, const Model& model);
 
 }  // namespace plica

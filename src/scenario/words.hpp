@@ -195,5 +195,11 @@ inline VolumeMethod method_of(const VolumeInput& volume) { return meaning_of(wor
 inline bool is_as_in_the_paper(const Scenario& scenario) {
   return method_of(scenario.volume) == VolumeMethod::projection || scenario.time.scheme != "newton";
 }
+/// What second order in time does not support in a scenario; empty if nothing.
+inline std::string what_bars_second_order(const Scenario& scenario) {
+  if (scenario.time.scheme != "newton") return "time.scheme = \"" + scenario.time.scheme + '"';
+  if (method_of(scenario.volume) == VolumeMethod::projection) return "volume.method = \"projection\"";
+  return scenario.dynamics.density_kg_per_m3 > 0 ? "dynamics.density_kg_per_m3 above 0" : "";
+}
 
 }  // namespace plica

@@ -5,7 +5,7 @@
 
 #include "measure/cell_columns.hpp"
 #include "show/boundary_surface.hpp"
-#include "tissue/facing.hpp"
+#include "tissue/faces.hpp"
 #include "tissue/hexahedron.hpp"
 
 namespace plica {

@@ -20,6 +20,10 @@
 #include "record/run_scenario.hpp"
 #include "scenario/differences.hpp"
 #include "scenario/embryo_axes.hpp"
+#include "scenario/print.hpp"
+#include "show/looks.hpp"
+#include "show/report_page.hpp"
+#include "show/report_run.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

@@ -12,7 +12,7 @@
 #include "measure/bending_error.hpp"
 #include "measure/cells.hpp"
 #include "measure/self_intersections.hpp"
-#include "scenario/remedies.hpp"
+#include "scenario/advice.hpp"
 
 namespace plica {
 namespace {

@@ -15,9 +15,8 @@
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
-#include "scenario/remedies.hpp"
+#include "scenario/advice.hpp"
 #include "scenario/setup.hpp"
-#include "scenario/watch.hpp"
 
 namespace plica {
 namespace {

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "measure/reference_run.hpp"
+#include "scenario/print.hpp"
+#include "study/frame_surface.hpp"
 
 namespace plica {
 

@@ -13,7 +13,6 @@
 #include "core/version.hpp"
 #include "record/run_directory.hpp"
 #include "record/summary.hpp"
-#include "scenario/differences.hpp"
 #include "scenario/print.hpp"
 #include "study/csv_fields.hpp"
 

@@ -1,6 +1,7 @@
 #include "tissue/faces.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -53,57 +54,86 @@ std::vector<Face> lateral_faces(const Tissue& tissue) {
   return faces;
 }
 
-// Where lines of a cell end on a wall between its stops, elements on the two sides do not match; the stops do.
-std::vector<Face> faces_between_stops(const Tissue& tissue) {
-  std::vector<Face> faces;
-  std::map<std::pair<NodeId, NodeId>, std::size_t> place;  // in faces, by the apical nodes
-  for (std::size_t c = 0; c < tissue.cells.size(); ++c)
-    for (const auto& stops : tissue.cells[c].walls)
-      for (std::size_t i = 1; i < stops.size(); ++i) {
-        const WallStop &from = stops[i - 1], &to = stops[i];
-        const auto [found, is_new] = place.emplace(std::minmax(from.apical, to.apical), faces.size());
-        if (!is_new) {
-          faces[found->second].beyond = CellId(c);
-          continue;
-        }
-        faces.push_back({{from.basal, to.basal, to.apical, from.apical}, CellId(c), {}});
-      }
-  return faces;
+using Panel = std::array<NodeId, 4>;
+
+// The parts of the lateral faces of a polygonal cell that its neighbours have, too: between the stops of a wall, or
+// between the levels of the lateral edges. Elements on the two sides do not match there: lines of a cell end on a wall
+// between its stops, and nodes hang on edges.
+std::vector<Panel> panels_of(const Cell& cell) {
+  std::vector<Panel> panels;
+  for (const auto& stops : cell.walls)
+    for (std::size_t i = 1; i < stops.size(); ++i)
+      panels.push_back({stops[i - 1].basal, stops[i].basal, stops[i].apical, stops[i - 1].apical});
+  if (!cell.walls.empty()) return panels;
+  const std::span<const CellEdge> lateral = std::span(cell.edges).last(cell.sides());
+  for (std::size_t i = 0; i < cell.sides(); ++i) {
+    const auto &from = lateral[i].nodes, &to = lateral[(i + 1) % cell.sides()].nodes;
+    for (std::size_t level = 1; level < from.size(); ++level)
+      panels.push_back({from[level - 1], to[level - 1], to[level], from[level]});
+  }
+  return panels;
 }
 
-// Where nodes hang on the edges of polygons, elements on the two sides do not match either; the lateral edges do.
-std::vector<Face> faces_between_edges(const Tissue& tissue) {
+std::vector<Face> faces_of_panels(const Tissue& tissue) {
   std::vector<Face> faces;
   std::map<std::pair<NodeId, NodeId>, std::size_t> place;  // in faces, by two opposite nodes
   const auto key = [&](NodeId low, NodeId high) { return std::pair(tissue.original(low), tissue.original(high)); };
-  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
-    const Cell& cell = tissue.cells[c];
-    const std::size_t sides = cell.sides();
-    const std::span<const CellEdge> lateral = std::span(cell.edges).last(sides);
-    for (std::size_t i = 0; i < sides; ++i) {
-      const auto &from = lateral[i].nodes, &to = lateral[(i + 1) % sides].nodes;
-      for (std::size_t level = 1; level < from.size(); ++level) {
-        // The neighbour has the same face from the other side.
-        const auto beyond = place.find(key(to[level - 1], from[level]));
-        if (beyond != place.end()) {
-          faces[beyond->second].beyond = CellId(c);
-          continue;
-        }
-        place.emplace(key(from[level - 1], to[level]), faces.size());
-        faces.push_back({{from[level - 1], to[level - 1], to[level], from[level]}, CellId(c), {}});
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c)
+    for (const Panel& panel : panels_of(tissue.cells[c])) {
+      // The neighbour has the same face from the other side.
+      if (const auto beyond = place.find(key(panel[1], panel[3])); beyond != place.end()) {
+        faces[beyond->second].beyond = CellId(c);
+        continue;
       }
+      place.emplace(key(panel[0], panel[2]), faces.size());
+      faces.push_back({panel, CellId(c), {}});
     }
-  }
   return faces;
 }
 
 std::vector<Face> all_lateral_faces(const Tissue& tissue) {
   if (std::ranges::all_of(tissue.hanging, [](const NodeMean& mean) { return mean.size() == 1; }))
     return lateral_faces(tissue);
-  std::vector<Face> faces =
-      tissue.cells.front().walls.empty() ? faces_between_edges(tissue) : faces_between_stops(tissue);
+  std::vector<Face> faces = faces_of_panels(tissue);
   for (Face& face : faces) face.share = share_of(tissue, face);
   return faces;
+}
+
+constexpr double nothing_um = 1e-6;  // rounding
+
+// 0 of a cell that the midline cuts, 1 of one that it runs along, else -1.
+int start_at_midline(const Tissue& tissue, const Cell& cell, bool has_back) {
+  double low = std::numeric_limits<double>::infinity(), high = -low, height = 0;
+  int on_it = 0;
+  for (const NodeId corner : cell.apical_corners()) {
+    const Vec3& x = tissue.rest_positions[corner.index()];
+    low = std::min(low, x.y());
+    high = std::max(high, x.y());
+    height += x.z();
+    on_it += static_cast<int>(std::abs(x.y()) < nothing_um);
+  }
+  if (has_back && height >= 0) return -1;
+  if (low < -nothing_um && high > nothing_um) return 0;
+  return on_it > 1 ? 1 : -1;
+}
+
+// Propagate given numbers, adding `step` through every lateral face, up to `most`.
+void spread(const Tissue& tissue, int step, int most, std::vector<int>& numbers) {
+  const std::vector<std::vector<CellId>> neighbours = wall_neighbours(tissue);
+  std::vector<std::size_t> front;
+  for (std::size_t c = 0; c < numbers.size(); ++c)
+    if (numbers[c] >= 0) front.push_back(c);
+  std::ranges::stable_sort(front, {}, [&](std::size_t c) { return numbers[c]; });
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const int next = numbers[front[i]] + step;
+    if (next > most) continue;
+    for (const CellId cell : neighbours[front[i]]) {
+      int& number = numbers[cell.index()];
+      if (number >= 0 && number <= next) continue;
+      number = next;
+      front.push_back(cell.index());
+    }
+  }
 }
 
 }  // namespace
@@ -163,6 +193,23 @@ std::optional<CellId> cell_between_layers(const Tissue& tissue) {
   for (std::size_t c = 0; c < tissue.cells.size(); ++c)
     if (!apical[c] || !basal[c]) return CellId(c);
   return std::nullopt;
+}
+
+std::vector<int> half_cells_from_midline(const Tissue& tissue) {
+  std::vector<int> numbers;
+  const bool has_back = goes_round(tissue);
+  for (const Cell& cell : tissue.cells) numbers.push_back(start_at_midline(tissue, cell, has_back));
+  spread(tissue, 2, std::numeric_limits<int>::max() - 2, numbers);
+  return numbers;
+}
+
+CellSet cells_around(const Tissue& tissue, const CellSet& cells, int rings) {
+  std::vector<int> numbers;
+  for (const bool is_in : cells) numbers.push_back(is_in ? 0 : -1);
+  spread(tissue, 1, rings, numbers);
+  CellSet around(cells.size());
+  for (std::size_t c = 0; c < cells.size(); ++c) around[c] = numbers[c] > 0;
+  return around;
 }
 
 }  // namespace plica

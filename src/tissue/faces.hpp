@@ -1,4 +1,5 @@
-// Faces of a tissue for laws on faces: apical, basal, and lateral ones, each lateral face once.
+// Faces of a tissue for laws on faces: apical, basal, and lateral ones, each lateral face once; and what follows from
+// them: neighbours, rows and rings of cells, whether a surface is closed.
 #pragma once
 
 #include <array>
@@ -7,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "tissue/hexahedron.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -40,5 +42,30 @@ std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue);
 
 /// Return the first cell without an apical or basal face, which shows more than one layer of cells.
 std::optional<CellId> cell_between_layers(const Tissue& tissue);
+
+/// Return twice the distance of each cell from the ventral midline, counted in cells along the shortest path through
+/// lateral faces: 0, 2, 4, ... if cells lie on the midline, 1, 3, 5, ... if it runs between two rows; -1 if
+/// unreachable. The midline is where the plane y = 0 cuts the apical surface, towards -z if the tissue has an outer
+/// shape.
+std::vector<int> half_cells_from_midline(const Tissue& tissue);
+
+/// Return the cells outside of a set within a number of lateral faces from it.
+CellSet cells_around(const Tissue& tissue, const CellSet& cells, int rings);
+
+/// Sum over the facets of a surface, for whether it faces one way: an open sheet, in contrast to a closed surface or a
+/// tube.
+struct Facing {
+  Vec3 area_vectors = Vec3::Zero();
+  double area = 0;
+
+  void add(const std::array<Vec3, 4>& facet) {
+    const Vec3 vector = facet_area_vector(facet);
+    area_vectors += vector;
+    area += vector.norm();
+  }
+
+  /// |Sum of area vectors| / sum of areas is 0 for a closed surface and 1 for a flat one.
+  [[nodiscard]] bool is_one_way() const { return area_vectors.norm() > 0.2 * area; }
+};
 
 }  // namespace plica

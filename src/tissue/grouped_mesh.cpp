@@ -1,6 +1,4 @@
 // Cells of several hexahedra out of a file: lattices on a grid, or prisms over polygons with nodes that may hang.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <numeric>
 #include <optional>
@@ -8,10 +6,7 @@
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/lattice.hpp"
 #include "tissue/mesh_faces.hpp"
-#include "tissue/mesh_orientation.hpp"
-#include "tissue/place.hpp"
 #include "tissue/polygon_cell.hpp"
-#include "tissue/polygon_rim.hpp"
 
 namespace plica {
 namespace {
@@ -28,7 +23,7 @@ struct SortedHexahedra {
 SortedHexahedra sorted_hexahedra(const HexahedralMesh& mesh) {
   const std::vector<int>& cell_of = mesh.groups.cell_of;
   if (cell_of.size() != mesh.cells.size())
-    throw MeshError(fmt::format("cell_id has {} values for {} hexahedra", cell_of.size(), mesh.cells.size()));
+    throw MeshError("cell_id has {} values for {} hexahedra", cell_of.size(), mesh.cells.size());
   SortedHexahedra sorted;
   sorted.order.resize(mesh.cells.size());
   std::iota(sorted.order.begin(), sorted.order.end(), std::size_t{0});
@@ -45,9 +40,7 @@ SortedHexahedra sorted_hexahedra(const HexahedralMesh& mesh) {
 
 // "cell 12 at (1.5, 0, -20) um": the middle of its first hexahedron.
 std::string cell_at(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std::size_t c) {
-  Vec3 middle = Vec3::Zero();
-  for (const NodeId node : sorted.elements[sorted.first[c]]) middle += mesh.points[node.index()] / 8;
-  return fmt::format("cell {} at {}", c, place_text(middle));
+  return cell_text(c, mesh, sorted.elements[sorted.first[c]]);
 }
 
 // Reads a cell's lattice off its hexahedra, the first direction fastest.
@@ -59,8 +52,8 @@ CellLattice lattice_of(const HexahedralMesh& mesh, const SortedHexahedra& sorted
   const std::size_t begin = sorted.first[c], count = sorted.first[c + 1] - begin;
   if (std::ranges::any_of(elements, [](int n) { return n < 1 || n > 1000; }) ||
       static_cast<std::size_t>(nu) * static_cast<std::size_t>(nv) * static_cast<std::size_t>(nw) != count)
-    throw MeshError(fmt::format("{} has {} hexahedra; elements_per_cell is {} x {} x {}", cell_at(mesh, sorted, c),
-                                count, nu, nv, nw));
+    throw MeshError("{} has {} hexahedra; elements_per_cell is {} x {} x {}", cell_at(mesh, sorted, c), count, nu, nv,
+                    nw);
   lattice.nodes.resize(static_cast<std::size_t>(nu + 1) * static_cast<std::size_t>(nv + 1) *
                        static_cast<std::size_t>(nw + 1));
   for (std::size_t e = 0; e < count; ++e) {
@@ -70,9 +63,8 @@ CellLattice lattice_of(const HexahedralMesh& mesh, const SortedHexahedra& sorted
       const int place = (u + (r.x() > 0)) + (nu + 1) * ((v + (r.y() > 0)) + (nv + 1) * (w + (r.z() > 0)));
       NodeId& node = lattice.nodes[static_cast<std::size_t>(place)];
       if (node.valid() && node != sorted.elements[begin + e][i])
-        throw MeshError(
-            fmt::format("the hexahedra of {} do not form a grid of {} x {} x {} in order, first direction fastest",
-                        cell_at(mesh, sorted, c), nu, nv, nw));
+        throw MeshError("the hexahedra of {} do not form a grid of {} x {} x {} in order, first direction fastest",
+                        cell_at(mesh, sorted, c), nu, nv, nw);
       node = sorted.elements[begin + e][i];
     }
   }
@@ -83,8 +75,7 @@ Tissue from_grid(const HexahedralMesh& mesh, const SortedHexahedra& sorted, cons
   const std::vector<int>& counts = mesh.groups.elements_per_cell;
   const std::size_t cell_count = sorted.first.size() - 1;
   if (counts.size() != 3 * cell_count)
-    throw MeshError(
-        fmt::format("elements_per_cell has {} numbers for {} cells; give three per cell", counts.size(), cell_count));
+    throw MeshError("elements_per_cell has {} numbers for {} cells; give three per cell", counts.size(), cell_count);
   std::vector<CellLattice> lattices;
   for (std::size_t c = 0; c < cell_count; ++c) {
     lattices.push_back(lattice_of(mesh, sorted, c, {counts[3 * c], counts[3 * c + 1], counts[3 * c + 2]}));
@@ -113,15 +104,13 @@ void set_hanging(const HexahedralMesh& mesh, Tissue& tissue) {
     double size = 0;
     for (int k = 0; k < between; ++k, ++h) {
       if (hanging[h] < 0 || static_cast<std::size_t>(hanging[h]) >= free)
-        throw MeshError(fmt::format("node {} hangs on node {}, which is not free", node, hanging[h]));
+        throw MeshError("node {} hangs on node {}, which is not free", node, hanging[h]);
       mean.emplace_back(NodeId(hanging[h]), 1.0 / between);
       size = std::max(size, (mesh.points[mean.back().first.index()] - mesh.points[mean[0].first.index()]).norm());
     }
     if (!((mean_of(mean, mesh.points) - mesh.points[node]).norm() <= hanging_tolerance * size))
-      throw MeshError(
-          fmt::format("node {} hangs on {} nodes, the first node {}, but does not lie in the middle "
-                      "between them",
-                      node, between, mean[0].first.number()));
+      throw MeshError("node {} hangs on {} nodes, the first node {}, but does not lie in the middle between them", node,
+                      between, mean[0].first.number());
     tissue.hanging.push_back(std::move(mean));
   }
 }
@@ -130,12 +119,12 @@ void set_corners(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std:
                  std::size_t free, Cell& cell) {
   const int count = mesh.groups.corner_counts[c];
   if (count < 6 || count % 2 != 0 || static_cast<std::size_t>(count) > mesh.groups.corners.size() - next)
-    throw MeshError(fmt::format("{} has {} corners; give 6 or more, equally many basal and apical",
-                                cell_at(mesh, sorted, c), count));
+    throw MeshError("{} has {} corners; give 6 or more, equally many basal and apical", cell_at(mesh, sorted, c),
+                    count);
   for (int k = 0; k < count; ++k) {
     const int corner = mesh.groups.corners[next++];
     if (corner < 0 || static_cast<std::size_t>(corner) >= free)
-      throw MeshError(fmt::format("a corner of {} is node {}, which is not free", cell_at(mesh, sorted, c), corner));
+      throw MeshError("a corner of {} is node {}, which is not free", cell_at(mesh, sorted, c), corner);
     cell.corners.emplace_back(corner);
   }
 }
@@ -148,25 +137,15 @@ void add_cell(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const M
   cell.first_element = ElementId(begin);
   cell.element_count = static_cast<int>(end - begin);
   cell.lineage.id = tissue.next_cell_id++;
-  for (std::size_t e = begin; e < end; ++e) {
-    const auto& element = sorted.elements[e];
-    tissue.elements.push_back(element);
-    tissue.element_cell.push_back(id);
-    tissue.element_rest_shape.push_back(gather(tissue.rest_positions, element));
-    const ElementId element_id(e);
-    if (faces.on_surface({e, 4}))
-      tissue.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id, element_id});
-    if (faces.on_surface({e, 5}))
-      tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id, element_id});
-  }
+  for (std::size_t e = begin; e < end; ++e)
+    add_element(sorted.elements[e], id, faces.on_surface({e, 4}), faces.on_surface({e, 5}), tissue);
   const auto chains = chains_about(tissue, std::span(tissue.basal_facets).subspan(basal),
                                    std::span(tissue.apical_facets).subspan(apical), cell);
   if (!chains)
-    throw MeshError(fmt::format(
-        "the corners of {} do not match its hexahedra; list in cell_corners those of its basal face, "
-        "counter-clockwise seen from the apical side, then the apical ones above them; the first four nodes of each "
-        "hexahedron are basal",
-        cell_at(mesh, sorted, c)));
+    throw MeshError(
+        "the corners of {} do not match its hexahedra; list in cell_corners those of its basal face, counter-clockwise "
+        "seen from the apical side, then the apical ones above them; the first four nodes of each hexahedron are basal",
+        cell_at(mesh, sorted, c));
   set_polygon_edges(*chains, tissue.rest_positions, cell);
   for (const NodeId corner : cell.corners) cell.rest_shape.push_back(tissue.rest_positions[corner.index()]);
   tissue.cells.push_back(std::move(cell));
@@ -220,8 +199,7 @@ void set_walls(Tissue& tissue) {
 Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces) {
   const std::size_t count = sorted.first.size() - 1;
   if (mesh.groups.corner_counts.size() != count)
-    throw MeshError(
-        fmt::format("cell_corner_counts has {} values for {} cells", mesh.groups.corner_counts.size(), count));
+    throw MeshError("cell_corner_counts has {} values for {} cells", mesh.groups.corner_counts.size(), count);
   Tissue tissue;
   tissue.rest_positions = mesh.points;
   set_hanging(mesh, tissue);
@@ -232,8 +210,7 @@ Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, 
     add_cell(mesh, sorted, faces, c, std::move(cell), tissue);
   }
   if (next != mesh.groups.corners.size())
-    throw MeshError(
-        fmt::format("cell_corners has {} nodes; cell_corner_counts adds up to {}", mesh.groups.corners.size(), next));
+    throw MeshError("cell_corners has {} nodes; cell_corner_counts adds up to {}", mesh.groups.corners.size(), next);
   set_walls(tissue);
   tissue.regions["all"] = CellSet(count, true);
   return tissue;
@@ -285,7 +262,7 @@ Tissue tissue_from_groups(const HexahedralMesh& mesh) {
   for (const auto& cell : mesh.cells)
     for (const NodeId node : cell) is_used[node.index()] = 1;
   if (const auto unused = std::ranges::find(is_used, 0); unused != is_used.end())
-    throw MeshError(fmt::format("node {} belongs to no hexahedron; remove it", unused - is_used.begin()));
+    throw MeshError("node {} belongs to no hexahedron; remove it", unused - is_used.begin());
   const SortedHexahedra sorted = sorted_hexahedra(mesh);
   const MeshFaces faces(sorted.elements, mesh.points);
   Tissue tissue =

@@ -8,9 +8,6 @@
 
 #include "tissue/lattice.hpp"
 #include "tissue/mesh_faces.hpp"
-#include "tissue/mesh_orientation.hpp"
-#include "tissue/pieces.hpp"
-#include "tissue/place.hpp"
 
 namespace plica {
 namespace {
@@ -22,42 +19,41 @@ void check_size(const HexahedralMesh& mesh, const std::array<int, 3>& elements) 
   if (mesh.cells.empty()) throw MeshError("the mesh has no cells");
   if (along < 1 || across < 1 || radial < 1) throw MeshError("elements_per_cell must be at least 1 in every direction");
   if (along != across)
-    throw MeshError(fmt::format(
+    throw MeshError(
         "elements_per_cell is [{}, {}, {}]; the cells of a file share no direction along the axis: make the first two "
         "equal",
-        along, across, radial));
+        along, across, radial);
   const double total = static_cast<double>(mesh.cells.size()) * along * across * radial;
   if (total > static_cast<double>(largest_mesh_elements))
-    throw MeshError(
-        fmt::format("the mesh would have {:.0f} elements; at most {} are allowed", total, largest_mesh_elements));
+    throw MeshError("the mesh would have {:.0f} elements; at most {} are allowed", total, largest_mesh_elements);
 }
 
 void check_arrays(const HexahedralMesh& mesh) {
   const std::size_t count = mesh.cells.size();
   if (!mesh.apical_faces.empty() && mesh.apical_faces.size() != count)
-    throw MeshError(fmt::format("{} apical faces are given for {} cells", mesh.apical_faces.size(), count));
+    throw MeshError("{} apical faces are given for {} cells", mesh.apical_faces.size(), count);
   for (const int face : mesh.apical_faces)
-    if (face < 0 || face > 5) throw MeshError(fmt::format("an apical face is {}; faces are 0 to 5", face));
+    if (face < 0 || face > 5) throw MeshError("an apical face is {}; faces are 0 to 5", face);
   for (const auto& [name, values] : mesh.arrays)
     if (values.size() != count)
-      throw MeshError(fmt::format("the cell array \"{}\" has {} values for {} cells", name, values.size(), count));
+      throw MeshError("the cell array \"{}\" has {} values for {} cells", name, values.size(), count);
 }
 
 void check_cell_nodes(const HexahedralMesh& mesh, std::size_t cell) {
   std::array<NodeId, 8> nodes = mesh.cells[cell];
   for (const NodeId node : nodes) {
     if (!node.valid() || node.index() >= mesh.points.size())
-      throw MeshError(fmt::format("cell {} uses node {}; nodes are 0 to {}", cell, node.number(),
-                                  static_cast<long long>(mesh.points.size()) - 1));
+      throw MeshError("cell {} uses node {}; nodes are 0 to {}", cell, node.number(),
+                      static_cast<long long>(mesh.points.size()) - 1);
     const Vec3& point = mesh.points[node.index()];
     if (!point.allFinite() || point.cwiseAbs().maxCoeff() > largest_coordinate_um)
-      throw MeshError(fmt::format("node {} of cell {} is at ({}, {}, {}); coordinates must be finite, in um",
-                                  node.number(), cell, point.x(), point.y(), point.z()));
+      throw MeshError("node {} of cell {} is at ({}, {}, {}); coordinates must be finite, in um", node.number(), cell,
+                      point.x(), point.y(), point.z());
   }
   std::sort(nodes.begin(), nodes.end());
   const auto twice = std::adjacent_find(nodes.begin(), nodes.end());
   if (twice != nodes.end())
-    throw MeshError(fmt::format("{} uses node {} twice; a hexahedron has eight", cell_at(mesh, cell), twice->number()));
+    throw MeshError("{} uses node {} twice; a hexahedron has eight", cell_at(mesh, cell), twice->number());
 }
 
 /// Remedy for a cell whose Jacobian is not positive at each corner.
@@ -74,8 +70,7 @@ void check_cells(const HexahedralMesh& mesh) {
     check_cell_nodes(mesh, cell);
     const HexPoints points = gather(mesh.points, mesh.cells[cell]);
     if (!(hex_scaled_jacobian(points) > 0))
-      throw MeshError(
-          fmt::format("{} is inverted (det J <= 0 at a corner): {}", cell_at(mesh, cell), inversion_remedy(points)));
+      throw MeshError("{} is inverted (det J <= 0 at a corner): {}", cell_at(mesh, cell), inversion_remedy(points));
   }
 }
 
@@ -86,32 +81,16 @@ double mean_edge_length(const HexahedralMesh& mesh) {
   return sum / (12.0 * static_cast<double>(mesh.cells.size()));
 }
 
-/// Merges nodes of the surface at one place, so that cells that touch share them. Nodes are sorted along a direction
-/// that no grid is likely to be square to, so that few are compared. Returns how many were merged.
-std::size_t merge_coincident_nodes(HexahedralMesh& mesh, const MeshFaces& faces) {
-  const Vec3 direction = Vec3(0.5772157, 0.2146018, 0.7878593);
-  const double tolerance = 1e-6 * mean_edge_length(mesh);
-  std::vector<NodeId> nodes;
+/// Merges nodes of the surface in one place, so that cells that touch share them. Returns how many were merged.
+std::ptrdiff_t merge_coincident_nodes(HexahedralMesh& mesh, const MeshFaces& faces) {
+  std::vector<std::size_t> nodes;
   for (const CellFace& side : faces.surface())
-    for (const int i : hex_faces[side.face]) nodes.push_back(mesh.cells[side.cell][i]);
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  std::vector<std::pair<double, NodeId>> sorted;
-  sorted.reserve(nodes.size());
-  for (const NodeId node : nodes) sorted.emplace_back(direction.dot(mesh.points[node.index()]), node);
-  std::sort(sorted.begin(), sorted.end());
-  std::map<NodeId, NodeId> first;  // of a merged node: one before it at its place
-  for (std::size_t i = 0; i < sorted.size(); ++i)
-    for (std::size_t j = i + 1; j < sorted.size() && sorted[j].first - sorted[i].first <= tolerance; ++j) {
-      const auto [low, high] = std::minmax(sorted[i].second, sorted[j].second);
-      if ((mesh.points[low.index()] - mesh.points[high.index()]).norm() > tolerance) continue;
-      NodeId& kept = first.try_emplace(high, low).first->second;
-      kept = std::min(kept, low);
-    }
+    for (const int i : hex_faces[side.face]) nodes.push_back(mesh.cells[side.cell][i].index());
+  const std::vector<std::size_t> first = first_in_place(mesh.points, std::move(nodes), 1e-6 * mean_edge_length(mesh));
   for (auto& cell : mesh.cells)
-    for (NodeId& node : cell)
-      for (auto found = first.find(node); found != first.end(); found = first.find(node)) node = found->second;
-  return first.size();
+    for (NodeId& node : cell) node = NodeId(first[node.index()]);
+  std::size_t number = 0;
+  return std::ranges::count_if(first, [&](std::size_t one) { return one != number++; });
 }
 
 /// Gives the nodes of refined cells their numbers: what lies on a face or an edge is one node for all the cells there.
@@ -185,9 +164,9 @@ void check_elements(const Tissue& tissue) {
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
     if (!(hex_scaled_jacobian(tissue.element_rest_shape[e]) > 0))
       throw MeshError(
-          fmt::format("{} is so warped that its elements are inverted (det J <= 0 within it); move its "
-                      "corners, or lower elements_per_cell",
-                      cell_at(tissue, tissue.element_cell[e])));
+          "{} is so warped that its elements are inverted (det J <= 0 within it); move its corners, or lower "
+          "elements_per_cell",
+          cell_at(tissue, tissue.element_cell[e]));
 }
 
 Vec3 volume_centroid(const HexahedralMesh& mesh) {
@@ -212,7 +191,7 @@ bool look_at_pieces(HexahedralMesh& mesh, const MeshFaces& faces, bool keep_larg
   const std::string text = pieces.text("cells");
   if (!keep_largest) {
     if (mesh.apical_faces.empty())
-      throw MeshError(fmt::format("the mesh is not one closed layer but {}: set embryo.keep = \"largest\"", text));
+      throw MeshError("the mesh is not one closed layer but {}: set embryo.keep = \"largest\"", text);
     mesh.remarks.push_back(
         fmt::format("the mesh has {} that share no face; embryo.keep = \"largest\" omits all but the largest", text));
     return false;
@@ -252,7 +231,7 @@ Tissue tissue_from_mesh(HexahedralMesh mesh, const MeshOptions& options) {
     return tissue_from_groups(mesh);
   }
   MeshFaces faces(mesh.cells, mesh.points);
-  if (const std::size_t merged = merge_coincident_nodes(mesh, faces); merged > 0) {
+  if (const std::ptrdiff_t merged = merge_coincident_nodes(mesh, faces); merged > 0) {
     mesh.remarks.push_back(fmt::format("{} coincident nodes were merged", merged));
     check_cells(mesh);
     faces = MeshFaces(mesh.cells, mesh.points);
@@ -271,9 +250,7 @@ Tissue tissue_from_mesh(HexahedralMesh mesh, const MeshOptions& options) {
     lattice.elements = elements_per_cell;
     lattice.has_apical = faces.on_surface({cell, apical[cell]});
     lattice.has_basal = faces.on_surface({cell, opposite_face(apical[cell])});
-    for (int w = 0; w <= elements_per_cell[2]; ++w)
-      for (int v = 0; v <= elements_per_cell[1]; ++v)
-        for (int u = 0; u <= elements_per_cell[0]; ++u) lattice.nodes.push_back(nodes.node(corners, {u, v, w}));
+    lattice.add_nodes([&](int u, int v, int w) { return nodes.node(corners, {u, v, w}); });
   }
   positions = drop_unused_nodes(positions, lattices);
   Tissue tissue = tissue_from_lattices(lattices, std::move(positions));

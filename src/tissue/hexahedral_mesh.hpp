@@ -2,22 +2,16 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
-#include "core/errors.hpp"
-#include "tissue/placement.hpp"
+#include "tissue/mesh_input.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
-
-/// Unusable mesh (a FileError). The text names the cell and the problem, without the file name unless from
-/// read_mesh_file or read_frame.
-class MeshError : public FileError {
- public:
-  using FileError::FileError;
-};
 
 /// Cells of several hexahedra, as written by `plica mesh`. The hexahedra of a cell go from basal to apical: nodes 4-7
 /// above nodes 0-3, unless `apical_faces` are given.
@@ -42,6 +36,12 @@ struct HexahedralMesh {
   std::map<std::string, CellArray> arrays;   // by name; one number per hexahedron, NaN: no value
   CellGroups groups = {};                    // empty: each hexahedron is a cell
   std::vector<std::string> remarks = {};     // what its reader omitted
+
+  static auto parts(auto& mesh) {
+    auto& [cell_of, elements_per_cell, corner_counts, corners, hanging] = mesh.groups;
+    return std::tie(mesh.points, mesh.cells, mesh.apical_faces, cell_of, elements_per_cell, corner_counts, corners,
+                    hanging, mesh.arrays, mesh.remarks);
+  }
 };
 
 /// How a mesh becomes a tissue.
@@ -61,6 +61,14 @@ inline constexpr long long largest_mesh_elements = 20'000'000;
 /// Nodes keep their order; those of refined elements follow. Without `apical_faces` the mesh must be one closed layer,
 /// one cell thick, whose outer side is apical. MeshError if the mesh is unusable.
 Tissue tissue_from_mesh(HexahedralMesh mesh, const MeshOptions& options);
+
+/// Read a hexahedral mesh: VTK unstructured grid, XML (`.vtu`) or legacy (`.vtk`) by content. Every hexahedron is a
+/// cell; faces, lines and vertices beside them are omitted.
+///
+/// Apical is the outer surface of a closed layer, or the face in the cell array `apical_array`, if given: 0-5 in the
+/// order of hex_faces. Other one-component cell arrays become `Tissue::cell_arrays`. FileError if the file cannot be
+/// read or is another kind of file, MeshError if the mesh is unusable.
+Tissue read_mesh_file(const std::filesystem::path& file, const std::string& apical_array, const MeshOptions& options);
 
 /// Make the tissue of a mesh with groups whose hexahedra and points have been checked: grouped_mesh.cpp.
 Tissue tissue_from_groups(const HexahedralMesh& mesh);

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "tissue/polygon_cell.hpp"
+
 namespace plica {
 namespace {
 
@@ -78,11 +80,7 @@ void set_walls(const Vectors& rest_positions, Cell& cell) {
   for (const NodeId corner : cell.corners) cell.rest_shape.push_back(rest_positions[corner.index()]);
   if (cell.element_count > 1) return;
   cell.quadrilaterals = {{{{0, 0}, {1, 0}, {2, 0}, {3, 0}}}};
-  for (int wall = 0; wall < 4; ++wall) {
-    const int from = wall, to = (wall + 1) % 4;
-    cell.walls.push_back(
-        {{0, cell.corners[from], cell.corners[from + 4]}, {1, cell.corners[to], cell.corners[to + 4]}});
-  }
+  cell.walls = walls_between_corners(cell);
 }
 
 // Calls take(nodes of the element, w) for each element of the cell, u fastest.
@@ -108,16 +106,18 @@ void set_corners_and_lines(const CellLattice& lattice, const Vectors& rest_posit
   set_lines(lattice, cell);
 }
 
+void add_element(const std::array<NodeId, 8>& element, CellId id, bool is_basal, bool is_apical, Tissue& tissue) {
+  const ElementId element_id(tissue.elements.size());
+  tissue.elements.push_back(element);
+  tissue.element_cell.push_back(id);
+  tissue.element_rest_shape.push_back(gather(tissue.rest_positions, element));
+  if (is_basal) tissue.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id, element_id});
+  if (is_apical) tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id, element_id});
+}
+
 void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue) {
   for_elements(lattice, [&](const std::array<NodeId, 8>& element, int w) {
-    tissue.elements.push_back(element);
-    tissue.element_cell.push_back(id);
-    tissue.element_rest_shape.push_back(gather(tissue.rest_positions, element));
-    const ElementId element_id(tissue.elements.size() - 1);
-    if (w == 0 && lattice.has_basal)
-      tissue.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id, element_id});
-    if (w == lattice.elements[2] - 1 && lattice.has_apical)
-      tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id, element_id});
+    add_element(element, id, w == 0 && lattice.has_basal, w == lattice.elements[2] - 1 && lattice.has_apical, tissue);
   });
 }
 

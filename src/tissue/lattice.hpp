@@ -18,6 +18,14 @@ struct CellLattice {
   bool has_basal = true;
   std::optional<GridPlace> grid_place;
 
+  /// Append all nodes, node_at(u, v, w).
+  template <class NodeAt>
+  void add_nodes(const NodeAt& node_at) {
+    for (int w = 0; w <= elements[2]; ++w)
+      for (int v = 0; v <= elements[1]; ++v)
+        for (int u = 0; u <= elements[0]; ++u) nodes.emplace_back(node_at(u, v, w));
+  }
+
   [[nodiscard]] NodeId node(int u, int v, int w) const {
     return nodes[u + (elements[0] + 1) * (v + (elements[1] + 1) * w)];
   }
@@ -26,6 +34,9 @@ struct CellLattice {
 /// Renumber the nodes in the order in which elements use them, so that data of nearby elements are close in memory.
 /// Every node must belong to a cell.
 void number_as_elements_come(std::vector<CellLattice>& cells, Vectors& rest_positions);
+
+/// Append an element of a cell, with its rest shape, and with facets where its faces are on the surface of the tissue.
+void add_element(const std::array<NodeId, 8>& element, CellId id, bool is_basal, bool is_apical, Tissue& tissue);
 
 /// Append the elements and facets of the cell to the tissue, with rest shapes from its rest positions, u fastest.
 void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue);

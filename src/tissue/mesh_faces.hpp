@@ -1,4 +1,4 @@
-// Face adjacency of a hexahedral mesh, and the faces of its surface.
+// Faces of a hexahedral mesh: adjacency, surface, and the apical face of each cell, which orients it.
 #pragma once
 
 #include <array>
@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "tissue/mesh_input.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -35,5 +36,18 @@ class MeshFaces {
  private:
   std::vector<std::int32_t> other_side_;  // cells x 6: cell x 6 + face beyond, or -1
 };
+
+/// Return the face of each cell on the outer surface of a closed layer, one cell thick. MeshError for any other mesh.
+std::vector<int> outer_faces(const HexahedralMesh& mesh, const MeshFaces& faces);
+
+/// Return the cell rotated (not mirrored) so that the given face becomes nodes 4-7; unchanged for face 5.
+std::array<NodeId, 8> turned_cell(const std::array<NodeId, 8>& cell, int apical_face);
+
+/// Check that apical faces of neighbours meet: both cells must have the same side of their shared face at their apical
+/// side. MeshError otherwise.
+void check_apical_faces(const HexahedralMesh& mesh, const MeshFaces& faces, const std::vector<int>& apical_faces);
+
+/// Return the face opposite to a face of a hexahedron.
+constexpr int opposite_face(int face) { return face ^ 1; }
 
 }  // namespace plica

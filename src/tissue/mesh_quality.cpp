@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 
 #include "tissue/faces.hpp"
 
@@ -59,17 +58,10 @@ PolygonQuality polygon_quality(const Tissue& tissue, const Vectors& positions) {
       if (edge.side == CellSide::apical)
         edges.push_back((positions[edge.nodes.back().index()] - positions[edge.nodes.front().index()]).norm());
   }
-  std::vector<std::set<CellId>> beyond(tissue.cells.size());
   CellSet at_rim(tissue.cells.size(), false);
-  for (const Face& face : faces_of(tissue, CellSide::lateral)) {
-    if (!face.beyond) {
-      at_rim[face.cell.index()] = true;
-      continue;
-    }
-    beyond[face.cell.index()].insert(*face.beyond);
-    beyond[face.beyond->index()].insert(face.cell);
-  }
-  for (const auto& cells : beyond) count(quality.neighbours, cells.size());
+  for (const Face& face : faces_of(tissue, CellSide::lateral))
+    if (!face.beyond) at_rim[face.cell.index()] = true;
+  for (const auto& neighbours : wall_neighbours(tissue)) count(quality.neighbours, neighbours.size());
   quality.rim_cells = static_cast<std::size_t>(std::ranges::count(at_rim, true));
   quality.apical_edge_um = spread(edges);
   quality.basal_area_um2 = spread(basal_areas(tissue, positions));

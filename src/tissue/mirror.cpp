@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "tissue/part.hpp"
+#include "core/box_grid.hpp"
 
 namespace plica {
 namespace {
@@ -19,37 +19,6 @@ double largest_coordinate(const Tissue& tissue) {
   for (const Vec3& x : tissue.rest_positions) largest = std::max(largest, x.cwiseAbs().maxCoeff());
   return largest;
 }
-
-/// Finds the node at a place, within a tolerance.
-class NodeFinder {
- public:
-  NodeFinder(const Vectors& positions, double size, double tolerance)
-      : positions_(positions), size_(size), tolerance_(tolerance) {
-    for (std::size_t n = 0; n < positions.size(); ++n) in_cubes_[cube(positions[n])].emplace_back(n);
-  }
-  [[nodiscard]] std::optional<NodeId> at(const Vec3& place) const {
-    const Cube low = cube(place.array() - tolerance_), high = cube(place.array() + tolerance_);
-    for (long i = low[0]; i <= high[0]; ++i)
-      for (long j = low[1]; j <= high[1]; ++j)
-        for (long k = low[2]; k <= high[2]; ++k) {
-          const auto found = in_cubes_.find({i, j, k});
-          if (found == in_cubes_.end()) continue;
-          for (const NodeId node : found->second)
-            if ((positions_[node.index()] - place).cwiseAbs().maxCoeff() <= tolerance_) return node;
-        }
-    return std::nullopt;
-  }
-
- private:
-  using Cube = std::array<long, 3>;
-  [[nodiscard]] Cube cube(const Vec3& place) const {
-    return {std::lround(std::floor(place.x() / size_)), std::lround(std::floor(place.y() / size_)),
-            std::lround(std::floor(place.z() / size_))};
-  }
-  const Vectors& positions_;
-  double size_, tolerance_;
-  std::map<Cube, std::vector<NodeId>> in_cubes_;
-};
 
 /// The images of all nodes and cells in the plane across one axis.
 struct Images {
@@ -64,7 +33,9 @@ class Reflecting {
         extent_(largest_coordinate(whole)),
         // Rounding of a mesh in double precision, with a margin.
         tolerance_(1e-9 * extent_),
-        at_place_(whole.rest_positions, 1e-3 * extent_, tolerance_) {
+        nodes_(1e-3 * extent_) {
+    for (std::size_t n = 0; n < whole.node_count(); ++n)
+      nodes_.add(n, {whole.rest_positions[n], whole.rest_positions[n]});
     for (std::size_t e = 0; e < whole.elements.size(); ++e) of_nodes_[sorted(whole.elements[e])] = ElementId(e);
   }
 
@@ -77,7 +48,7 @@ class Reflecting {
     for (const Vec3& x : whole_.rest_positions) {
       Vec3 beyond = x;
       beyond[axis] = -x[axis];
-      const std::optional<NodeId> image = at_place_.at(beyond);
+      const std::optional<NodeId> image = node_at(beyond);
       if (!image)
         throw NotSymmetric(fmt::format("the mesh is not symmetric about {}: it has a node at {:.6g}, {:.6g}, {:.6g} um "
                                        "but none at its image",
@@ -107,6 +78,13 @@ class Reflecting {
     std::ranges::sort(nodes);
     return nodes;
   }
+  [[nodiscard]] std::optional<NodeId> node_at(const Vec3& place) const {
+    std::vector<std::size_t> near;
+    nodes_.find_near(Box{place, place}.widened(tolerance_), near);
+    for (const std::size_t n : near)
+      if ((whole_.rest_positions[n] - place).cwiseAbs().maxCoeff() <= tolerance_) return NodeId(n);
+    return std::nullopt;
+  }
   void refuse_cut_cells(int axis, const std::string& plane) const {
     for (std::size_t c = 0; c < whole_.cells.size(); ++c) {
       bool below = false, above = false;
@@ -122,11 +100,83 @@ class Reflecting {
 
   const Tissue& whole_;
   double extent_, tolerance_;
-  NodeFinder at_place_;
+  BoxGrid nodes_;
   std::map<std::array<NodeId, 8>, ElementId> of_nodes_;
 };
 
 }  // namespace
+
+Division keep_only(Tissue& tissue, const CellSet& cells) {
+  Division division;
+  division.free_nodes_before = tissue.free_node_count();
+  std::vector<CellId> place(tissue.cells.size());          // of cells that stay
+  std::vector<ElementId> element(tissue.elements.size());  // of elements that stay
+  Tissue part = tissue;
+  part.cells.clear();
+  part.elements.clear();
+  part.element_cell.clear();
+  part.element_rest_shape.clear();
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+    if (!cells[c]) continue;
+    place[c] = CellId(part.cells.size());
+    division.origin.emplace_back(c);
+    part.cells.push_back(tissue.cells[c]);
+    part.cells.back().first_element = ElementId(part.elements.size());
+    const std::size_t first = tissue.cells[c].first_element.index();
+    for (std::size_t e = first; e < first + tissue.cells[c].element_count; ++e) {
+      element[e] = ElementId(part.elements.size());
+      part.elements.push_back(tissue.elements[e]);
+      part.element_cell.push_back(place[c]);
+      part.element_rest_shape.push_back(tissue.element_rest_shape[e]);
+    }
+  }
+  for (auto* facets : {&part.apical_facets, &part.basal_facets}) {
+    std::erase_if(*facets, [&](const Facet& facet) { return !cells[facet.cell.index()]; });
+    for (Facet& facet : *facets) {
+      facet.cell = place[facet.cell.index()];
+      facet.element = element[facet.element.index()];
+    }
+  }
+  for (auto& [name, set] : part.regions) set = inherited(division, set);
+  for (auto& [name, values] : part.cell_arrays) values = inherited(division, values);
+  tissue = std::move(part);
+  return division;
+}
+
+std::vector<NodeId> drop_unused_nodes(Tissue& tissue) {
+  std::vector<NodeId> now(tissue.node_count()), before;
+  for (const auto& nodes : tissue.elements)
+    for (const NodeId node : nodes) now[node.index()] = node;
+  Vectors positions;
+  std::vector<NodeMean> hanging;
+  const std::size_t free_nodes = tissue.free_node_count();
+  for (NodeId& node : now) {
+    if (!node.valid()) continue;
+    before.push_back(node);
+    if (node.index() >= free_nodes) hanging.push_back(tissue.hanging[node.index() - free_nodes]);
+    node = NodeId(positions.size());
+    positions.push_back(tissue.rest_positions[before.back().index()]);
+  }
+  // Nodes that carry hanging nodes of a cell belong to the cell.
+  for (NodeMean& mean : hanging)
+    for (auto& [node, weight] : mean) node = now[node.index()];
+  tissue.hanging = std::move(hanging);
+  const auto renumber = [&](auto& nodes) {
+    for (NodeId& node : nodes) node = now[node.index()];
+  };
+  for (auto& nodes : tissue.elements) renumber(nodes);
+  for (Cell& cell : tissue.cells) {
+    renumber(cell.corners);
+    for (CellEdge& edge : cell.edges) renumber(edge.nodes);
+    for (CellLine& line : cell.lines) renumber(line.chain.nodes);
+    for (auto& wall : cell.walls)
+      for (WallStop& stop : wall) stop = {stop.at, now[stop.basal.index()], now[stop.apical.index()]};
+  }
+  for (auto* facets : {&tissue.apical_facets, &tissue.basal_facets})
+    for (Facet& facet : *facets) renumber(facet.nodes);
+  tissue.rest_positions = std::move(positions);
+  return before;
+}
 
 Vectors Mirror::whole(std::span<const Vec3> of_side) const {
   const MirroredVectors mirrored{*this, of_side};

@@ -1,5 +1,5 @@
-// Symmetric tissue: its planes through the origin, and the mapping of the full tissue to the solved side
-// (docs/theory/mirror.md).
+// Parts of a tissue: some of its cells; and the solved side of a symmetric tissue, its planes through the origin, and
+// the mapping of the full tissue to the side (docs/theory/mirror.md).
 #pragma once
 
 #include <array>
@@ -7,9 +7,17 @@
 #include <string>
 #include <vector>
 
+#include "tissue/division.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
+
+/// Keep only the given cells, with their elements and facets; nodes stay, used or not. The result maps data per cell,
+/// as after a division.
+Division keep_only(Tissue& tissue, const CellSet& cells);
+
+/// Remove nodes without elements. Return former node numbers: new node to old.
+std::vector<NodeId> drop_unused_nodes(Tissue& tissue);
 
 /// Mapping of nodes and cells of the full tissue to those of a side. Empty for a tissue without mirror planes, where
 /// everything is its own image.

@@ -1,8 +1,12 @@
 // Polygon of a cell: places on its outline, its split into quadrilaterals (one per element column), its edges.
+// Lines of nodes along which cells contract. The tension of the edges of a cell is spread over those of its face or
+// walls where these have several elements (docs/decisions/0005-spread-springs.md).
 #pragma once
 
 #include <array>
 #include <functional>
+#include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -73,5 +77,32 @@ void set_corners_and_lines_of_walls(const Vectors& rest_positions, Cell& cell);
 /// its edges. Nothing but the cell itself moves such a node, so it may stand out of the surface of the tissue as a
 /// dimple. (Grid cells have none: their inner lines run on from cell to cell.)
 std::vector<bool> inner_nodes_of_polygons(const Tissue& tissue);
+
+/// Return the node above each node of the elements of a cell, except the apical ones.
+std::map<NodeId, NodeId> nodes_above(const Tissue& tissue, const Cell& cell);
+
+/// Return the chains of free nodes between corners on both faces, and up from each corner. `basal` and `apical` are the
+/// facets of the cell; nodes 4-7 of each element lie above 0-3. Empty if there are none: corners are not on the
+/// boundary of the facets, in its order, or not above each other.
+std::optional<PolygonChains> chains_about(const Tissue& tissue, std::span<const Facet> basal,
+                                          std::span<const Facet> apical, const Cell& cell);
+
+/// Chain of nodes whose segments are springs in series, with a share of the tension of an edge.
+struct ContractileLine {
+  std::vector<NodeId> nodes;
+  EdgeDirection direction;  // for polygons, the nearer of along and across
+  double along = 0;         // alignment with x: squared cosine
+  double share = 1;         // tension / tension of an edge
+  double in_series = 1;     // number of such chains in series that are as soft as an edge of this tension
+};
+
+/// Return the lines of each cell on one side; cells. They are
+/// - on the faces of grid cells, the lines of element edges (Cell::lines);
+/// - on polygons without inner nodes, their edges;
+/// - on other polygons, all element edges of the face: each of its quadrilaterals gives its four edges the same
+///   stiffness and the same tension, so that both have the energy of the edges of the polygon when the face is
+///   stretched evenly;
+/// - on walls, the lines of element edges from base to apex, those at corners with half a share of each wall.
+std::vector<std::vector<ContractileLine>> contractile_lines(const Tissue& tissue, CellSide side);
 
 }  // namespace plica

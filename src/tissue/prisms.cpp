@@ -5,6 +5,7 @@
 #include <compare>
 #include <map>
 
+#include "tissue/lattice.hpp"
 #include "tissue/polygon_cell.hpp"
 
 namespace plica {
@@ -124,14 +125,7 @@ class Builder {
       for (const OutlineQuad& one : split) {
         std::array<NodeId, 8> element;
         for (int i = 0; i < 8; ++i) element[i] = node(place_of(one[i % 4], c), level + i / 4);
-        const ElementId element_id(tissue_.elements.size());
-        tissue_.elements.push_back(element);
-        tissue_.element_cell.push_back(id);
-        tissue_.element_rest_shape.push_back(gather(tissue_.rest_positions, element));
-        if (level == 0)
-          tissue_.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id, element_id});
-        if (level == layers_ - 1)
-          tissue_.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id, element_id});
+        add_element(element, id, level == 0, level == layers_ - 1, tissue_);
       }
     tissue_.cells.push_back(std::move(cell));
   }

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "tissue/periods.hpp"
+#include "tissue/shapes/polygon_surface.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {

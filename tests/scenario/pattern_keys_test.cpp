@@ -8,7 +8,7 @@
 #include "simulation/controls.hpp"
 #include "support/own_folder.hpp"
 #include "support/scenarios.hpp"
-#include "tissue/rows.hpp"
+#include "tissue/faces.hpp"
 
 namespace {
 

@@ -2,11 +2,10 @@
 #include "scenario/print.hpp"
 
 #include "scenario/builtin.hpp"
-#include "scenario/differences.hpp"
 #include "scenario/load.hpp"
 #include "scenario/schema.hpp"
 #include "scenario/suggest.hpp"
-#include "scenario/syntax.hpp"
+#include "scenario/toml_reader.hpp"
 #include "scenario/words.hpp"
 #include "support/testing.hpp"
 

@@ -4,8 +4,6 @@
 
 #include "scenario/embryo_axes.hpp"
 #include "scenario/print.hpp"
-#include "scenario/validate.hpp"
-#include "scenario/watch.hpp"
 #include "support/scenarios.hpp"
 #include "tissue/shapes/embryo.hpp"
 

@@ -9,7 +9,6 @@
 #include "support/resumed.hpp"
 #include "support/scenarios.hpp"
 #include "tissue/shapes/polygon_sheet.hpp"
-#include "tissue/shapes/rectangle_polygons.hpp"
 
 namespace {
 

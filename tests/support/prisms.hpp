@@ -18,6 +18,40 @@ void exchange_neighbours(PrismSheet& sheet, std::size_t cell, std::size_t other)
 /// an edge, alike at the apex and the base, and every seventh wall is turned.
 PrismSheet irregular_polygons(int columns, int rows, double edge_um, double height_um, double size, unsigned seed);
 
+/// Area of each polygon, um^2, from triangles about the mean of its corners.
+inline std::vector<double> polygon_areas(const PolygonSurface& surface) {
+  std::vector<double> areas;
+  for (const auto& polygon : surface.polygons)
+    areas.push_back(fan_about(surface.vertices, polygon, mean_corner(surface.vertices, polygon)).area);
+  return areas;
+}
+
+/// Lengths of the edges, um.
+inline std::vector<double> edge_lengths(const PolygonSurface& surface) {
+  std::vector<double> lengths;
+  for (const PolygonEdge& edge : polygon_edges(surface))
+    lengths.push_back((surface.vertices[edge.vertices[1]] - surface.vertices[edge.vertices[0]]).norm());
+  return lengths;
+}
+
+/// Number of polygons with 0, 1, 2, 3, ... corners.
+inline std::vector<std::size_t> corner_counts(const PolygonSurface& surface) {
+  std::vector<std::size_t> counts;
+  for (const auto& polygon : surface.polygons) {
+    if (counts.size() <= polygon.size()) counts.resize(polygon.size() + 1, 0);
+    ++counts[polygon.size()];
+  }
+  return counts;
+}
+
+/// Volume of each cell, um^3.
+inline std::vector<double> prism_volumes(const PrismSheet& sheet) {
+  const Tissue tissue = tissue_from_prisms(sheet, PolygonSplit::diagonals, 1);
+  std::vector<double> volumes;
+  for (const Cell& cell : tissue.cells) volumes.push_back(cell_volume(tissue, cell, tissue.rest_positions));
+  return volumes;
+}
+
 /// The same, bent: from a place at height z = 0 or -height to where it lies.
 template <class Place>
 PrismSheet bent(PrismSheet sheet, const Place& place) {

@@ -6,6 +6,7 @@
 #include "tissue/lattice.hpp"
 #include "tissue/mirror.hpp"
 #include "tissue/rows.hpp"
+#include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 
 namespace {

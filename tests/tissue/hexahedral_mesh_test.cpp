@@ -135,14 +135,14 @@ TEST(MeshBytes, ComeBackAsTheMesh) {
   mesh.arrays["a"] = CellArray(mesh.cells.size(), 1);
   mesh.arrays["b"] = CellArray(mesh.cells.size(), 0);
   mesh.arrays["b"][3] = 0.25;
-  const std::string bytes = mesh_to_bytes(mesh);
-  const HexahedralMesh back = mesh_from_bytes(bytes);
+  const std::string bytes = to_bytes(mesh);
+  const HexahedralMesh back = from_bytes<HexahedralMesh>(bytes);
   EXPECT_EQ(back.points, mesh.points);
   EXPECT_EQ(back.cells, mesh.cells);
   EXPECT_EQ(back.apical_faces, mesh.apical_faces);
   EXPECT_EQ(back.arrays, mesh.arrays);
-  EXPECT_THROW((void)mesh_from_bytes(std::string_view(bytes).substr(0, bytes.size() - 1)), MeshError);
-  EXPECT_THROW((void)mesh_from_bytes({}), MeshError);
+  EXPECT_THROW((void)from_bytes<HexahedralMesh>(std::string_view(bytes).substr(0, bytes.size() - 1)), MeshError);
+  EXPECT_THROW((void)from_bytes<HexahedralMesh>({}), MeshError);
 }
 
 HexahedralMesh mesh_in_groups(const Tissue& tissue) {
@@ -163,8 +163,8 @@ TEST(GroupedMesh, ComesBackTheSame) {
       const Tissue sheet = polygons(split, layers),
                    egg = build_egg({250, 120, 120, {}, {}}, 150, 1, {20, split, layers});
       for (const Tissue* tissue : {&sheet, &egg}) {
-        expect_same_tissue(tissue_from_mesh(mesh_from_bytes(mesh_to_bytes(mesh_in_groups(*tissue))), {1, 1, 1}),
-                           *tissue);
+        expect_same_tissue(
+            tissue_from_mesh(from_bytes<HexahedralMesh>(to_bytes(mesh_in_groups(*tissue))), {1, 1, 1}), *tissue);
       }
     }
   for (const std::array<int, 3>& elements : {std::array{2, 2, 1}, {1, 2, 3}}) {

@@ -4,7 +4,9 @@
 
 #include "mechanics/active/cell_pattern.hpp"
 #include "tissue/contractile_lines.hpp"
+#include "mechanics/active/given_activities.hpp"
 #include "tissue/division.hpp"
+#include "tissue/polygon_cell.hpp"
 
 namespace plica {
 namespace {

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <variant>
 
 #include "core/clock.hpp"
 #include "scenario/tables/table.hpp"
@@ -13,32 +14,35 @@ enum class Places { lengths, angles, any };
 using enum Places;
 
 /// A profile key used with one shape, and with axes of lengths, angles, or any.
-template <class Field>
 struct ProfileKey {
   const char* key;
   const char* shape;
   Places places;
-  Field ProfileInput::*field;
+  std::variant<std::optional<double> ProfileInput::*, std::vector<double> ProfileInput::*> field;
+  const char* remedy = nullptr;  // if it lacks; null: it is in an alternative unit
 };
 
-constexpr ProfileKey<std::optional<double>> number_keys[] = {
-    {"half_width_um", "linear", lengths, &ProfileInput::half_width_um},
-    {"half_width_deg", "linear", angles, &ProfileInput::half_width_deg},
-    {"sigma_um", "gaussian", lengths, &ProfileInput::sigma_um},
-    {"sigma_um", "gaussian", lengths, &ProfileInput::sigma_cells},  // alternative unit
-    {"sigma_deg", "gaussian", angles, &ProfileInput::sigma_deg},
-    {"full_cells", "plateau", lengths, &ProfileInput::full_cells},
-    {"fade_cells", "plateau", lengths, &ProfileInput::fade_cells},
-    {"full_deg", "plateau", angles, &ProfileInput::full_deg},
-    {"fade_deg", "plateau", angles, &ProfileInput::fade_deg},
-    {"from", "array", any, &ProfileInput::from},
-    {"to", "array", any, &ProfileInput::to}};
-
-constexpr ProfileKey<std::vector<double>> list_keys[] = {
-    {"at_um", "table", lengths, &ProfileInput::at_um},
-    {"at_um", "table", lengths, &ProfileInput::at_cells},  // alternative unit
-    {"at_deg", "table", angles, &ProfileInput::at_deg},
-    {"factor", "table", any, &ProfileInput::factor}};
+constexpr ProfileKey profile_keys[] = {
+    {"half_width_um", "linear", lengths, &ProfileInput::half_width_um,
+     "set half_width_um to the distance at which the factor reaches edge, a number > 0"},
+    {"half_width_deg", "linear", angles, &ProfileInput::half_width_deg,
+     "set half_width_deg to the angle at which the factor reaches edge, a number > 0"},
+    {"sigma_um", "gaussian", lengths, &ProfileInput::sigma_um, "set sigma_um or sigma_cells to a number > 0"},
+    {"sigma_um", "gaussian", lengths, &ProfileInput::sigma_cells},
+    {"sigma_deg", "gaussian", angles, &ProfileInput::sigma_deg, "set sigma_deg to a number > 0"},
+    {"full_cells", "plateau", lengths, &ProfileInput::full_cells,
+     "set full_cells to the number of cells in the plateau"},
+    {"fade_cells", "plateau", lengths, &ProfileInput::fade_cells,
+     "set fade_cells to the width of the taper in cells (0: none)"},
+    {"full_deg", "plateau", angles, &ProfileInput::full_deg, "set full_deg to the angular width of the plateau"},
+    {"fade_deg", "plateau", angles, &ProfileInput::fade_deg,
+     "set fade_deg to the width of the taper in degrees (0: none)"},
+    {"from", "array", any, &ProfileInput::from, "set `from` to the array value at which the factor is edge (0)"},
+    {"to", "array", any, &ProfileInput::to, "set `to` to the array value at which the factor is middle (1)"},
+    {"at_um", "table", lengths, &ProfileInput::at_um, "set at_um or at_cells to the positions of the points"},
+    {"at_um", "table", lengths, &ProfileInput::at_cells},
+    {"at_deg", "table", angles, &ProfileInput::at_deg, "set at_deg to the angles of the points"},
+    {"factor", "table", any, &ProfileInput::factor, "set factor to one value per position"}};
 
 class ProfileCheck {
  public:
@@ -54,8 +58,8 @@ class ProfileCheck {
       drop(path_ + ".axis", profile_.axis, {}, path_ + ".shape", with_shape(), "remove axis", input_);
     else if (profile_.axis.empty())
       profile_.axis = "across";
-    for (const auto& one : number_keys) drop_unused(one);
-    for (const auto& one : list_keys) drop_unused(one);
+    for (const ProfileKey& one : profile_keys)
+      std::visit([&](auto field) { drop_unused(one, profile_.*field); }, one.field);
     if (profile_.shape != "array")
       drop(path_ + ".array", profile_.array, {}, path_ + ".shape", with_shape(),
            "remove array, or set shape to \"array\"", input_);
@@ -93,22 +97,27 @@ class ProfileCheck {
   }
 
   void check_no_shape() {
-    bool some = !profile_.axis.empty() || !profile_.array.empty() || profile_.centre_deg.has_value();
-    for (const auto& one : number_keys) some |= (profile_.*one.field).has_value();
-    for (const auto& one : list_keys) some |= !(profile_.*one.field).empty();
-    if (some)
+    if (!profile_.axis.empty() || !profile_.array.empty() || profile_.centre_deg ||
+        std::ranges::any_of(profile_keys, [&](const ProfileKey& one) { return is_set(one); }))
       report(".shape", "is missing",
              fmt::format("set shape to one of: {}", fmt::join(words_of(words::profile_shapes), " | ")));
   }
 
+  [[nodiscard]] bool is_set(const ProfileKey& one) const {
+    const auto is_set = [&]<class Field>(Field ProfileInput::*field) { return profile_.*field != Field(); };
+    return std::visit(is_set, one.field);
+  }
+  [[nodiscard]] bool fits_axis(const ProfileKey& one) const {
+    return one.places == any || (one.places == angles) == has_angles();
+  }
+
   template <class Field>
-  void drop_unused(const ProfileKey<Field>& one) {
+  void drop_unused(const ProfileKey& one, Field& field) {
     const std::string key = path_ + "." + one.key;
-    Field& field = profile_.*one.field;
     if (profile_.shape != one.shape)
       drop(key, field, {}, path_ + ".shape", with_shape(), fmt::format("remove it, or set shape to \"{}\"", one.shape),
            input_);
-    else if (one.places != any && (one.places == angles) != has_angles())
+    else if (!fits_axis(one))
       drop(key, field, {}, path_ + ".axis", fmt::format("is not used with axis \"{}\"", profile_.axis),
            has_angles() ? "use the key in degrees, or set another axis" : "use a length, or set axis to \"angle\"",
            input_);
@@ -121,38 +130,20 @@ class ProfileCheck {
            has_angles() ? "remove about; centre_deg sets the centre" : "remove about");
   }
 
-  void need(const std::string& key, bool is_there, const std::string& remedy) {
-    if (!is_there) report(key, "is missing", remedy);
-  }
-
   void check_needed() {
     const ProfileInput& p = profile_;
-    if (p.shape == "linear" && has_angles())
-      need(".half_width_deg", p.half_width_deg.has_value(),
-           "set half_width_deg to the angle at which the factor reaches edge, a number > 0");
-    else if (p.shape == "linear")
-      need(".half_width_um", p.half_width_um.has_value(),
-           "set half_width_um to the distance at which the factor reaches edge, a number > 0");
-    if (p.shape == "gaussian" && has_angles())
-      need(".sigma_deg", p.sigma_deg.has_value(), "set sigma_deg to a number > 0");
-    else if (p.shape == "gaussian")
-      need(".sigma_um", p.sigma_um || p.sigma_cells, "set sigma_um or sigma_cells to a number > 0");
-    if (p.shape == "plateau" && has_angles()) {
-      need(".full_deg", p.full_deg.has_value(), "set full_deg to the angular width of the plateau");
-      need(".fade_deg", p.fade_deg.has_value(), "set fade_deg to the width of the taper in degrees (0: none)");
-    } else if (p.shape == "plateau") {
-      need(".full_cells", p.full_cells.has_value(), "set full_cells to the number of cells in the plateau");
-      need(".fade_cells", p.fade_cells.has_value(), "set fade_cells to the width of the taper in cells (0: none)");
+    if (p.shape == "array" && p.array.empty())
+      report(".array", "is missing", "set array to a cell array of the embryo");
+    for (const ProfileKey& one : profile_keys) {
+      const auto sets_it = [&](const ProfileKey& other) {
+        return std::string_view(other.key) == one.key && is_set(other);
+      };
+      if (p.shape == one.shape && fits_axis(one) && one.remedy != nullptr &&
+          std::ranges::none_of(profile_keys, sets_it))
+        report(fmt::format(".{}", one.key), "is missing", one.remedy);
     }
-    if (p.shape == "array") check_array();
+    if (p.shape == "array" && p.from && p.from == p.to) report(".to", "equals `from`", "set `to` to a different value");
     if (p.shape == "table") check_table();
-  }
-
-  void check_array() {
-    need(".array", !profile_.array.empty(), "set array to a cell array of the embryo");
-    need(".from", profile_.from.has_value(), "set `from` to the array value at which the factor is edge (0)");
-    need(".to", profile_.to.has_value(), "set `to` to the array value at which the factor is middle (1)");
-    if (profile_.from && profile_.from == profile_.to) report(".to", "equals `from`", "set `to` to a different value");
   }
 
   void check_table() {
@@ -160,10 +151,6 @@ class ProfileCheck {
     const std::vector<double>& at = has_angles()              ? profile_.at_deg
                                     : !profile_.at_um.empty() ? profile_.at_um
                                                               : profile_.at_cells;
-    need(key, !at.empty(),
-         has_angles() ? "set at_deg to the angles of the points"
-                      : "set at_um or at_cells to the positions of the points");
-    need(".factor", !profile_.factor.empty(), "set factor to one value per position");
     if (at.empty() || profile_.factor.empty() || !input_.sound(path_ + key)) return;
     if (at.size() != profile_.factor.size())
       report(".factor", fmt::format("has length {} for {} positions", profile_.factor.size(), at.size()),
@@ -301,10 +288,9 @@ void check_program(const std::string& table, const ProgramInput& program, Input&
   if (program.time_s.empty() && program.activity.empty()) return;
   if (program.time_s.empty()) return input.report(time, "is missing", "set time_s or time_min along with activity");
   if (program.activity.empty()) return input.report(activity, "is missing", "set activity to as many values as times");
-  if (program.time_s.size() != program.activity.size()) {
+  if (program.time_s.size() != program.activity.size())
     input.report(activity, fmt::format("has length {} for {} times", program.activity.size(), program.time_s.size()),
                  "set activity to as many values as times");
-  }
   const auto& times = program.time_s;
   for (std::size_t i = 1; i < times.size(); ++i) {
     if (times[i] < times[i - 1])

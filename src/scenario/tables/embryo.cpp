@@ -27,10 +27,9 @@ void check_unused_keys(Scenario& scenario, Input& input) {
   for (const Row& row : rows_of("embryo")) {
     if (row.used_by(shape)) continue;
     const std::string address = fmt::format("embryo.{}", row.key);
-    if (input.given_with(address, "embryo.shape")) {
+    if (input.given_with(address, "embryo.shape"))
       input.report(address, fmt::format("is not used with shape \"{}\"", shape),
                    fmt::format("remove {}, or set shape to {}", row.key, fmt::join(row.options.shapes, " or ")));
-    }
     reset_to_default(row, scenario, "");
   }
   if (shape_of(scenario.embryo) == EmbryoShape::sphere) scenario.embryo.length_um = scenario.embryo.diameter_um;
@@ -39,10 +38,9 @@ void check_unused_keys(Scenario& scenario, Input& input) {
 void check_element_count(const EmbryoInput& embryo, Input& input) {
   const auto& per_cell = embryo.elements_per_cell;
   const std::int64_t elements = built_cell_count(embryo) * per_cell[0] * per_cell[1] * per_cell[2];
-  if (elements > max_elements) {
+  if (elements > max_elements)
     input.report("embryo.cells", fmt::format("requires {} elements, more than the limit of {}", elements, max_elements),
                  "reduce cells or elements_per_cell");
-  }
 }
 
 void check_length(const std::string& address, const std::vector<double>& numbers, std::size_t length,
@@ -73,16 +71,14 @@ void check_embryo(Scenario& scenario, Input& input) {
                  fmt::format("requires {}", embryo.belly_sag_um ? "back_sag_um" : "belly_sag_um"),
                  "set both keys, or neither");
   if ((shape_of(embryo) == EmbryoShape::pill || shape_of(embryo) == EmbryoShape::egg) && sound("length_um") &&
-      sound("diameter_um") && embryo.length_um < embryo.diameter_um) {
+      sound("diameter_um") && embryo.length_um < embryo.diameter_um)
     input.report("embryo.length_um",
                  fmt::format("{} is less than the diameter, {}", embryo.length_um, embryo.diameter_um),
                  "set length_um to at least diameter_um");
-  }
   if (!is_patch(shape_of(embryo)) && sound("cell_height_um") && sound("diameter_um") &&
-      embryo.cell_height_um >= embryo.diameter_um / 2) {
+      embryo.cell_height_um >= embryo.diameter_um / 2)
     input.report("embryo.cell_height_um", fmt::format("{} leaves no room inside the embryo", embryo.cell_height_um),
                  fmt::format("set cell_height_um below half of diameter_um, {}", embryo.diameter_um / 2));
-  }
   if (is_of_grid(shape_of(embryo)) && sound("cells") && sound("elements_per_cell")) check_element_count(embryo, input);
 }
 

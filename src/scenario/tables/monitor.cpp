@@ -97,9 +97,8 @@ void check_expected_monitors(const Scenario& scenario, Input& input) {
 void check_expectations(Scenario& scenario, Input& input) {
   for (const auto& [name, expected] : scenario.expect) {
     const std::string path = "expect." + name;
-    if (!expected.within && !expected.within_percent && input.sound(path) && input.sound(path + ".within")) {
+    if (!expected.within && !expected.within_percent && input.sound(path) && input.sound(path + ".within"))
       input.report(path, "has no tolerance", "set within or within_percent");
-    }
   }
   if (input.sound("monitor")) check_expected_monitors(scenario, input);
 }

@@ -2,7 +2,6 @@
 #include "core/clock.hpp"
 #include "measure/measure_set.hpp"
 #include "scenario/tables/table.hpp"
-#include "scenario/validate.hpp"
 
 namespace plica {
 namespace {
@@ -21,10 +20,9 @@ void check_time(const TimeInput& time, Input& input) {
     input.report("time.end_s", fmt::format("the run would end before its first step, at {} s", time.end_s),
                  "set end_s to a later time");
   if (!input.sound("time.first_step_s") || !input.sound("time.max_step_s")) return;
-  if (time.first_step_s > time.max_step_s) {
+  if (time.first_step_s > time.max_step_s)
     input.report("time.first_step_s", fmt::format("{} is above max_step_s, {}", time.first_step_s, time.max_step_s),
                  "set first_step_s to at most max_step_s");
-  }
 }
 
 void check_integrator(const Scenario& scenario, Input& input) {

@@ -22,20 +22,18 @@ void check_vitelline(Scenario& scenario, Input& input) {
   if ((!is_patch(shape) && shape != EmbryoShape::surface) || !input.sound("vitelline.enabled")) return;
   // The file determines whether a surface is closed.
   if (input.place("vitelline.enabled") == nullptr) scenario.vitelline.enabled = false;
-  if (scenario.vitelline.enabled && is_patch(shape)) {
+  if (scenario.vitelline.enabled && is_patch(shape))
     input.report("vitelline.enabled",
                  fmt::format("a vitelline membrane requires a closed embryo, but a {} is open", scenario.embryo.shape),
                  "set enabled to false");
-  }
 }
 
 void check_dynamics(Scenario& scenario, Input& input) {
   const DynamicsInput& dynamics = scenario.dynamics;
   if (!input.sound("dynamics.surface_drag_Pa_s_per_um") || !input.sound("dynamics.density_kg_per_m3")) return;
-  if (dynamics.surface_drag_Pa_s_per_um == 0 && dynamics.density_kg_per_m3 == 0) {
+  if (dynamics.surface_drag_Pa_s_per_um == 0 && dynamics.density_kg_per_m3 == 0)
     input.report("dynamics.surface_drag_Pa_s_per_um", "drag and density are both 0",
                  "set surface_drag_Pa_s_per_um or density_kg_per_m3 above 0");
-  }
 }
 
 using V = VolumeInput;

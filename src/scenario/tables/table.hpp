@@ -18,11 +18,11 @@
 #include "core/units.hpp"
 #include "mechanics/model.hpp"
 #include "scenario/acting.hpp"
+#include "scenario/check_tissue.hpp"
 #include "scenario/input.hpp"
-#include "scenario/regions.hpp"
 #include "scenario/schema.hpp"
 #include "scenario/words.hpp"
-#include "tissue/place.hpp"
+#include "tissue/mesh_input.hpp"
 
 namespace plica {
 

@@ -4,8 +4,8 @@
 
 #include "core/errors.hpp"
 #include "tissue/files/frame_file.hpp"
-#include "tissue/files/mesh_file.hpp"
 #include "tissue/files/polygon_file.hpp"
+#include "tissue/hexahedral_mesh.hpp"
 
 #ifndef PLICA_WITH_VTK
 

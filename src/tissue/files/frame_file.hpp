@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -32,12 +33,20 @@ struct Frame {
   std::map<std::string, std::vector<double>> element_scalars;  // elements, by name
   std::optional<double> time_s;
   FramePolygons polygons = {};  // empty if every cell is one element, and in files of older versions
+
+  static auto parts(auto& frame) {
+    auto& [ends, apical, basal, elements] = frame.polygons;
+    return std::tie(frame.positions, frame.elements, frame.node_vectors, frame.element_scalars, frame.time_s, ends,
+                    apical, basal, elements);
+  }
 };
 
 /// Surface of flat triangles.
 struct TriangleSurface {
   Vectors points;  // um
   std::vector<std::array<int, 3>> triangles;
+
+  static auto parts(auto& surface) { return std::tie(surface.points, surface.triangles); }
 };
 
 /// Read a snapshot: hexahedra, node vectors, one-component cell data and the time. FileError if the file cannot be

@@ -7,15 +7,18 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "tissue/files/child_reading.hpp"
-#include "tissue/hexahedral_mesh.hpp"
+#include "tissue/mesh_input.hpp"
 
 template <class Object>
 class vtkSmartPointer;
+class vtkDataArray;
 class vtkDataSet;
+class vtkDataSetAttributes;
 class vtkPolyData;
 class vtkUnstructuredGrid;
 
@@ -32,6 +35,13 @@ vtkSmartPointer<vtkDataSet> read_data_set(const std::filesystem::path& file);
 /// Read the surface in a file, or the boundary of a volume mesh, split into triangles: VTK XML or legacy by content;
 /// STL, PLY and OBJ by extension.
 vtkSmartPointer<vtkPolyData> read_triangles(const std::filesystem::path& file);
+
+/// Return all points of a grid or surface.
+Vectors points_of(vtkDataSet& data);
+
+/// Call `take(name, array)` for each named array of `components` numbers per node or cell.
+void for_arrays(vtkDataSetAttributes& data, int components,
+                const std::function<void(const std::string& name, vtkDataArray&)>& take);
 
 /// Hexahedra among the cells of a grid, which may also have faces, lines and vertices.
 struct GridHexahedra {

@@ -2,8 +2,10 @@
 #include <fmt/ranges.h>
 #include <vtkCellArray.h>
 #include <vtkCellTypes.h>
+#include <vtkDataArray.h>
 #include <vtkDataReader.h>
 #include <vtkDataSet.h>
+#include <vtkDataSetAttributes.h>
 #include <vtkDataSetSurfaceFilter.h>
 #include <vtkGenericCell.h>
 #include <vtkGenericDataObjectReader.h>
@@ -34,7 +36,8 @@
 #include "core/files.hpp"
 #include "core/one_thread_vtk.hpp"
 #include "tissue/files/grid_reading.hpp"
-#include "tissue/files/plain_text.hpp"
+#include "tissue/files/text_lines.hpp"
+#include "tissue/hexahedral_mesh.hpp"
 
 namespace plica {
 namespace {
@@ -87,10 +90,9 @@ vtkStandardNewMacro(ErrorWindow)
   if (start.starts_with("# vtk DataFile")) return false;
   const std::size_t first = start.find_first_not_of(" \t\r\n");
   if (first == std::string::npos || start[first] != '<')
-    throw_unread(
-        file,
-        "neither a VTK XML file (.vtu) nor a legacy VTK file (.vtk); from Python, plica.Tissue.from_file reads Abaqus, "
-        "Gmsh and others");
+    throw_unread(file,
+                 "neither a VTK XML file (.vtu) nor a legacy VTK file (.vtk); from Python, plica.Tissue.from_file "
+                 "reads Abaqus, Gmsh and others");
   return true;
 }
 
@@ -150,7 +152,7 @@ bool is_volume(int type) {
 std::vector<long long> hexahedra_among(vtkUnstructuredGrid& grid) {
   const vtkIdType count = grid.GetNumberOfCells();
   if (count > largest_mesh_elements)
-    throw MeshError(fmt::format("the mesh has {} cells; at most {} are allowed", count, largest_mesh_elements));
+    throw MeshError("the mesh has {} cells; at most {} are allowed", count, largest_mesh_elements);
   if (count == 0) return {};
   vtkCellArray* cells = grid.GetCells();
   const vtkUnsignedCharArray* types = grid.GetCellTypesArray();
@@ -161,20 +163,19 @@ std::vector<long long> hexahedra_among(vtkUnstructuredGrid& grid) {
     const int type = grid.GetCellType(cell);
     if (type == VTK_HEXAHEDRON || is_quadratic(type)) {
       if (cells->GetCellSize(cell) < 8 || (type == VTK_HEXAHEDRON && cells->GetCellSize(cell) != 8))
-        throw MeshError(
-            fmt::format("cell {} is a hexahedron with {} nodes; 8 are required", cell, cells->GetCellSize(cell)));
+        throw MeshError("cell {} is a hexahedron with {} nodes; 8 are required", cell, cells->GetCellSize(cell));
       hexahedra.push_back(cell);
     } else if (is_volume(type)) {
-      throw MeshError(fmt::format(
-          "cell {} is a {} (VTK type {}); every volume must be a vtkHexahedron (type {}): mesh one layer of "
-          "hexahedra, in Gmsh for example, or set embryo.shape to \"surface\" and give apical polygons",
-          cell, vtkCellTypes::GetClassNameFromTypeId(type), type, int{VTK_HEXAHEDRON}));
+      throw MeshError(
+          "cell {} is a {} (VTK type {}); every volume must be a vtkHexahedron (type {}): mesh one layer of hexahedra, "
+          "in Gmsh for example, or set embryo.shape to \"surface\" and give apical polygons",
+          cell, vtkCellTypes::GetClassNameFromTypeId(type), type, int{VTK_HEXAHEDRON});
     }
   }
   if (hexahedra.empty())
-    throw MeshError(fmt::format(
+    throw MeshError(
         "none of its {} cells is a hexahedron, cell 0 is a {}; for polygons, set embryo.shape to \"surface\"", count,
-        vtkCellTypes::GetClassNameFromTypeId(grid.GetCellType(0))));
+        vtkCellTypes::GetClassNameFromTypeId(grid.GetCellType(0)));
   return hexahedra;
 }
 
@@ -221,16 +222,28 @@ vtkSmartPointer<vtkPolyData> read_triangles(const std::filesystem::path& file) {
   return triangles_of(file, *vtkNew<vtkGenericDataObjectReader>());
 }
 
+Vectors points_of(vtkDataSet& data) {
+  Vectors points(static_cast<std::size_t>(data.GetNumberOfPoints()));
+  for (std::size_t i = 0; i < points.size(); ++i) data.GetPoint(static_cast<vtkIdType>(i), points[i].data());
+  return points;
+}
+
+void for_arrays(vtkDataSetAttributes& data, int components,
+                const std::function<void(const std::string& name, vtkDataArray&)>& take) {
+  for (int a = 0; a < data.GetNumberOfArrays(); ++a)
+    if (vtkDataArray* array = data.GetArray(a);
+        array != nullptr && array->GetName() != nullptr && array->GetNumberOfComponents() == components)
+      take(array->GetName(), *array);
+}
+
 GridHexahedra hexahedra_of(vtkUnstructuredGrid& grid) {
   GridHexahedra found;
   found.cells = hexahedra_among(grid);
   found.remark = remark_on(grid, found.cells);
   const vtkIdType point_count = grid.GetNumberOfPoints();
   if (point_count > 8 * largest_mesh_elements)
-    throw MeshError(
-        fmt::format("the mesh has {} nodes; at most {} are allowed", point_count, 8 * largest_mesh_elements));
-  found.points.resize(static_cast<std::size_t>(point_count));
-  for (vtkIdType i = 0; i < point_count; ++i) grid.GetPoints()->GetPoint(i, found.points[i].data());
+    throw MeshError("the mesh has {} nodes; at most {} are allowed", point_count, 8 * largest_mesh_elements);
+  found.points = points_of(grid);
   vtkNew<vtkIdList> nodes;
   for (const vtkIdType cell : found.cells) {
     grid.GetCells()->GetCellAtId(cell, nodes);
@@ -239,7 +252,7 @@ GridHexahedra hexahedra_of(vtkUnstructuredGrid& grid) {
       // Before VTK's number is made shorter.
       const vtkIdType node = nodes->GetId(i);
       if (node < 0 || node >= point_count)
-        throw MeshError(fmt::format("cell {} uses node {}; nodes are 0 to {}", cell, node, point_count - 1));
+        throw MeshError("cell {} uses node {}; nodes are 0 to {}", cell, node, point_count - 1);
       hexahedron[i] = NodeId(static_cast<std::size_t>(node));
     }
   }

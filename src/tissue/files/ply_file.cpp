@@ -10,154 +10,31 @@
 #include <cstdint>
 #include <optional>
 
-#include "tissue/files/plain_text.hpp"
 #include "tissue/files/polygon_file.hpp"
-#include "tissue/hexahedral_mesh.hpp"
+#include "tissue/files/text_lines.hpp"
 
 namespace plica {
 namespace {
 
-enum class Type { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
-
-std::optional<Type> type_of(std::string_view word) {
-  constexpr std::array<std::array<std::string_view, 2>, 8> names = {{{"char", "int8"},
-                                                                     {"uchar", "uint8"},
-                                                                     {"short", "int16"},
-                                                                     {"ushort", "uint16"},
-                                                                     {"int", "int32"},
-                                                                     {"uint", "uint32"},
-                                                                     {"float", "float32"},
-                                                                     {"double", "float64"}}};
-  for (std::size_t t = 0; t < names.size(); ++t)
-    if (std::ranges::find(names[t], word) != names[t].end()) return static_cast<Type>(t);
-  return {};
-}
-
-struct Property {
-  std::string name;
-  Type type;
-  std::optional<Type> counted_by;  // of a list
-};
-
-struct Element {
-  std::string name;
-  std::size_t count = 0;
-  std::vector<Property> properties;
-};
-
 enum class Format { ascii, little, big };
-
-// Line by line, so that what follows the header can be bytes.
-class Header {
- public:
-  explicit Header(std::string_view& bytes) : bytes_(bytes) {
-    if (next().front() != "ply") complain("expected \"ply\"");
-    for (auto words = next(); words.front() != "end_header"; words = next()) {
-      if (words.front() == "format") read_format(words);
-      if (words.front() == "element") read_element(words);
-      if (words.front() == "property") read_property(words);
-    }
-    if (!format) complain("the header has no format line");
-  }
-
-  std::optional<Format> format;
-  std::vector<Element> elements;
-
- private:
-  [[noreturn]] void complain(const std::string& what) const {
-    throw MeshError(fmt::format("line {}: {}", line_, what));
-  }
-
-  std::vector<std::string_view> next() {
-    ++line_;
-    const std::size_t end = bytes_.find('\n');
-    if (end == std::string_view::npos) complain("the file ends within the header");
-    std::string_view line = bytes_.substr(0, end);
-    bytes_.remove_prefix(end + 1);
-    std::vector<std::string_view> words;
-    for (std::size_t at = line.find_first_not_of(" \t\r"); at != std::string_view::npos;) {
-      const std::size_t stop = std::min(line.find_first_of(" \t\r", at), line.size());
-      words.push_back(line.substr(at, stop - at));
-      at = line.find_first_not_of(" \t\r", stop);
-    }
-    if (words.empty()) words.emplace_back("comment");
-    return words;
-  }
-
-  void read_format(const std::vector<std::string_view>& words) {
-    const std::string_view word = words.size() > 1 ? words[1] : "";
-    if (word == "ascii") format = Format::ascii;
-    if (word == "binary_little_endian") format = Format::little;
-    if (word == "binary_big_endian") format = Format::big;
-    if (!format)
-      complain(fmt::format("\"{}\" is not a format; formats: ascii, binary_little_endian, binary_big_endian", word));
-  }
-
-  void read_element(const std::vector<std::string_view>& words) {
-    Element element;
-    if (words.size() < 3) complain("an element must have a name and a count");
-    element.name = words[1];
-    const auto [end, error] = std::from_chars(words[2].data(), words[2].data() + words[2].size(), element.count);
-    if (error != std::errc() || end != words[2].data() + words[2].size())
-      complain(fmt::format("\"{}\" is not a number of elements", words[2]));
-    if (std::ranges::find(elements, element.name, &Element::name) != elements.end())
-      complain(fmt::format("the header has two elements \"{}\"; rename one", element.name));
-    elements.push_back(std::move(element));
-  }
-
-  void read_property(const std::vector<std::string_view>& words) {
-    if (elements.empty()) complain("a property precedes the first element");
-    const bool is_list = words.size() == 5 && words[1] == "list";
-    if (!is_list && words.size() != 3) complain("a property must have a type and a name");
-    const std::optional<Type> type = type_of(words[words.size() - 2]), count = is_list ? type_of(words[2]) : Type::int8;
-    if (!type || !count) complain(fmt::format("\"{}\": unknown type", fmt::join(words, " ")));
-    Element& element = elements.back();
-    if (std::ranges::find(element.properties, words.back(), &Property::name) != element.properties.end())
-      complain(fmt::format("element \"{}\" has two properties \"{}\"; rename one", element.name, words.back()));
-    element.properties.push_back({std::string(words.back()), *type, is_list ? count : std::optional<Type>()});
-  }
-
-  std::string_view& bytes_;
-  int line_ = 0;
-};
 
 /// The numbers after the header, one after the other.
 class Numbers {
  public:
+  using Read = double (Numbers::*)();  // of a type
+
   Numbers(std::string_view bytes, Format format) : bytes_(bytes), format_(format) {}
 
-  double next(Type type) {
-    if (format_ == Format::ascii) return next_word();
-    switch (type) {
-      case Type::int8:
-        return next_of<std::int8_t>();
-      case Type::uint8:
-        return next_of<std::uint8_t>();
-      case Type::int16:
-        return next_of<std::int16_t>();
-      case Type::uint16:
-        return next_of<std::uint16_t>();
-      case Type::int32:
-        return next_of<std::int32_t>();
-      case Type::uint32:
-        return next_of<std::uint32_t>();
-      case Type::float32:
-        return next_of<float>();
-      case Type::float64:
-        break;
-    }
-    return next_of<double>();
-  }
+  double next(Read read) { return format_ == Format::ascii ? next_word() : (this->*read)(); }
 
   /// Read the length of a list, bounded by the size of the file.
-  std::size_t next_count(Type type) {
-    const double count = next(type);
+  std::size_t next_count(Read read) {
+    const double count = next(read);
     if (!(count >= 0) || count > static_cast<double>(bytes_.size()) || count != std::floor(count))
-      throw MeshError(fmt::format("a list has the invalid length {}", count));
+      throw MeshError("a list has the invalid length {}", count);
     return static_cast<std::size_t>(count);
   }
 
- private:
   template <class Number>
   double next_of() {
     if (bytes_.size() < sizeof(Number)) throw MeshError("the file ends early");
@@ -168,8 +45,8 @@ class Numbers {
     return static_cast<double>(std::bit_cast<Number>(raw));
   }
 
+ private:
   double next_word() {
-    constexpr std::string_view blanks = " \t\r\n\f\v";
     const std::size_t start = bytes_.find_first_not_of(blanks);
     if (start == std::string_view::npos) throw MeshError("the file ends early");
     const std::size_t end = std::min(bytes_.find_first_of(blanks, start), bytes_.size());
@@ -178,7 +55,7 @@ class Numbers {
     double value = 0;
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || stop != word.data() + word.size())
-      throw MeshError(fmt::format("\"{}\" is not a number", word.substr(0, 40)));
+      throw MeshError("\"{}\" is not a number", word.substr(0, 40));
     return value;
   }
 
@@ -186,25 +63,114 @@ class Numbers {
   Format format_;
 };
 
+/// Type by its two names; null if unknown.
+Numbers::Read type_of(std::string_view word) {
+  struct Type {
+    std::string_view name, other_name;
+    Numbers::Read read;
+  };
+  for (const auto& [name, other_name, read] : {Type{"char", "int8", &Numbers::next_of<std::int8_t>},
+                                               {"uchar", "uint8", &Numbers::next_of<std::uint8_t>},
+                                               {"short", "int16", &Numbers::next_of<std::int16_t>},
+                                               {"ushort", "uint16", &Numbers::next_of<std::uint16_t>},
+                                               {"int", "int32", &Numbers::next_of<std::int32_t>},
+                                               {"uint", "uint32", &Numbers::next_of<std::uint32_t>},
+                                               {"float", "float32", &Numbers::next_of<float>},
+                                               {"double", "float64", &Numbers::next_of<double>}})
+    if (word == name || word == other_name) return read;
+  return nullptr;
+}
+
+struct Property {
+  std::string name;
+  Numbers::Read type;
+  Numbers::Read counted_by;  // of a list; else null
+};
+
+struct Element {
+  std::string name;
+  std::size_t count = 0;
+  std::vector<Property> properties;
+};
+
+// Line by line, so that what follows the header can be bytes.
+class Header {
+ public:
+  explicit Header(std::string_view bytes) : lines_(bytes) {
+    if (next().front() != "ply") lines_.complain("expected \"ply\"");
+    for (auto words = next(); words.front() != "end_header"; words = next()) {
+      if (words.front() == "format") read_format(words);
+      if (words.front() == "element") read_element(words);
+      if (words.front() == "property") read_property(words);
+    }
+    if (!format) lines_.complain("the header has no format line");
+  }
+
+  std::optional<Format> format;
+  std::vector<Element> elements;
+
+  [[nodiscard]] std::string_view bytes_after() const { return lines_.rest(); }
+
+ private:
+  using Words = TextLines::Words;
+
+  Words next() {
+    const auto words = lines_.words();
+    if (!words) lines_.complain("the file ends within the header");
+    return *words;
+  }
+
+  void read_format(const Words& words) {
+    const std::string_view word = words.size() > 1 ? words[1] : "";
+    if (word == "ascii") format = Format::ascii;
+    if (word == "binary_little_endian") format = Format::little;
+    if (word == "binary_big_endian") format = Format::big;
+    if (!format)
+      lines_.complain("\"{}\" is not a format; formats: ascii, binary_little_endian, binary_big_endian", word);
+  }
+
+  void read_element(const Words& words) {
+    if (words.size() < 3) lines_.complain("an element must have a name and a count");
+    const auto count = lines_.number_in<std::size_t>(words[2], "a number of elements");
+    if (std::ranges::find(elements, words[1], &Element::name) != elements.end())
+      lines_.complain("the header has two elements \"{}\"; rename one", words[1]);
+    elements.push_back({std::string(words[1]), count, {}});
+  }
+
+  void read_property(const Words& words) {
+    if (elements.empty()) lines_.complain("a property precedes the first element");
+    const bool is_list = words.size() == 5 && words[1] == "list";
+    if (!is_list && words.size() != 3) lines_.complain("a property must have a type and a name");
+    const Numbers::Read type = type_of(words[words.size() - 2]), counted_by = is_list ? type_of(words[2]) : nullptr;
+    if (type == nullptr || (is_list && counted_by == nullptr))
+      lines_.complain("\"{}\": unknown type", fmt::join(words, " "));
+    Element& element = elements.back();
+    if (std::ranges::find(element.properties, words.back(), &Property::name) != element.properties.end())
+      lines_.complain("element \"{}\" has two properties \"{}\"; rename one", element.name, words.back());
+    element.properties.push_back({std::string(words.back()), type, counted_by});
+  }
+
+  TextLines lines_;
+};
+
+/// Number of values of a property: the length of a list, or 1.
+std::size_t next_length(const Property& property, Numbers& numbers) {
+  return property.counted_by == nullptr ? 1 : numbers.next_count(property.counted_by);
+}
+
 bool is_corners(const Property& property) {
-  return property.counted_by && (property.name == "vertex_indices" || property.name == "vertex_index");
+  return property.counted_by != nullptr && (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
 void read_face(const Element& element, std::size_t face, Numbers& numbers, PolygonFile& file) {
   for (const Property& property : element.properties) {
-    if (!property.counted_by) {
-      const double value = numbers.next(property.type);
-      file.arrays[property.name].push_back(value);
-      continue;
-    }
-    const std::size_t count = numbers.next_count(*property.counted_by);
-    for (std::size_t k = 0; k < count; ++k) {
+    for (std::size_t left = next_length(property, numbers); left > 0; --left) {
       const double vertex = numbers.next(property.type);
+      if (property.counted_by == nullptr) file.arrays[property.name].push_back(vertex);
       if (!is_corners(property)) continue;
       if (!(vertex >= 0) || !(vertex < static_cast<double>(file.surface.vertices.size())) ||
           vertex != std::floor(vertex))
-        throw MeshError(
-            fmt::format("face {} uses vertex {}; {} precede it", face, vertex, file.surface.vertices.size()));
+        throw MeshError("face {} uses vertex {}; {} precede it", face, vertex, file.surface.vertices.size());
       file.surface.polygons[face].push_back(static_cast<std::size_t>(vertex));
     }
   }
@@ -213,8 +179,7 @@ void read_face(const Element& element, std::size_t face, Numbers& numbers, Polyg
 void read_vertex(const Element& element, Numbers& numbers, PolygonFile& file) {
   Vec3 point = Vec3::Zero();
   for (const Property& property : element.properties) {
-    std::size_t count = property.counted_by ? numbers.next_count(*property.counted_by) : 1;
-    for (; count > 0; --count) {
+    for (std::size_t left = next_length(property, numbers); left > 0; --left) {
       const double value = numbers.next(property.type);
       if (property.name.size() == 1 && property.name[0] >= 'x' && property.name[0] <= 'z')
         point[property.name[0] - 'x'] = value;
@@ -235,15 +200,15 @@ void check_properties(const Element& element) {
 }  // namespace
 
 PolygonFile polygons_in_ply(std::string_view bytes) {
-  bytes = plain_text(bytes);
   const Header header(bytes);
+  bytes = header.bytes_after();
   Numbers numbers(bytes, *header.format);
   PolygonFile file;
   for (const Element& element : header.elements) {
     check_properties(element);
     // A number has at least a byte; elements without numbers are none.
     if (element.count > bytes.size())
-      throw MeshError(fmt::format("{} elements \"{}\" exceed the file", element.count, element.name));
+      throw MeshError("{} elements \"{}\" exceed the file", element.count, element.name);
     if (element.name == "face") file.surface.polygons.resize(element.count);
     for (std::size_t i = 0; i < element.count; ++i) {
       if (element.name == "vertex") {
@@ -252,8 +217,7 @@ PolygonFile polygons_in_ply(std::string_view bytes) {
         read_face(element, i, numbers, file);
       } else {
         for (const Property& property : element.properties)
-          for (std::size_t n = property.counted_by ? numbers.next_count(*property.counted_by) : 1; n > 0; --n)
-            numbers.next(property.type);
+          for (std::size_t left = next_length(property, numbers); left > 0; --left) numbers.next(property.type);
       }
     }
   }

@@ -11,8 +11,7 @@
 
 #include "core/files.hpp"
 #include "core/numbers.hpp"
-#include "tissue/files/plain_text.hpp"
-#include "tissue/hexahedral_mesh.hpp"
+#include "tissue/files/text_lines.hpp"
 
 namespace plica {
 namespace {
@@ -37,7 +36,7 @@ std::vector<std::string_view> fields_of(std::string_view line) {
 /// Column of a table. Text is kept until it is known whether the column holds numbers.
 struct Column {
   std::string_view name;
-  CellArray values;
+  std::vector<double> values;
   bool has_number = false;
   int text_line = 0;  // of the first text, 0: none
   std::string_view text;
@@ -53,8 +52,7 @@ bool is_missing(std::string_view field) {
 }
 
 [[noreturn]] void throw_text(const Column& column) {
-  throw MeshError(
-      fmt::format("line {}: \"{}\" of column {} is not a number", column.text_line, column.text, column.name));
+  throw MeshError("line {}: \"{}\" of column {} is not a number", column.text_line, column.text, column.name);
 }
 
 void read_field(std::string_view field, int line, Column& column) {
@@ -71,13 +69,11 @@ void read_field(std::string_view field, int line, Column& column) {
   column.values.push_back(number.value_or(std::nan("")));
 }
 
-std::vector<Column> named_columns(const std::vector<std::string_view>& names, int line, bool of_points) {
+std::vector<Column> named_columns(const std::vector<std::string_view>& names, const TextLines& lines, bool of_points) {
   for (const std::string_view axis : axes)
     if (of_points && std::ranges::count(names, axis) != 1)
-      throw MeshError(
-          fmt::format("line {}: must name the columns, including x_um, y_um and z_um once each; it "
-                      "names {}",
-                      line, fmt::join(names, ", ")));
+      lines.complain("must name the columns, including x_um, y_um and z_um once each; it names {}",
+                     fmt::join(names, ", "));
   std::vector<Column> columns;
   for (const std::string_view name : names) columns.push_back({.name = name, .values = {}, .text = {}});
   return columns;
@@ -85,26 +81,23 @@ std::vector<Column> named_columns(const std::vector<std::string_view>& names, in
 
 // Columns of a table whose first line names them; that of points has all axes.
 std::vector<Column> columns_in_csv(std::string_view text, bool of_points) {
-  text = plain_text(text);
   std::vector<Column> columns;
-  for (int line_number = 1; !text.empty(); ++line_number) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  TextLines lines(text);
+  while (const auto whole = lines.line()) {
+    const std::string_view line = trimmed(*whole);
     if (line.empty() || line.front() == '#') continue;
     const std::vector<std::string_view> fields = fields_of(line);
     if (columns.empty()) {
-      columns = named_columns(fields, line_number, of_points);
+      columns = named_columns(fields, lines, of_points);
       continue;
     }
     if (fields.size() != columns.size())
-      throw MeshError(
-          fmt::format("line {}: has {} fields; the first line has {}", line_number, fields.size(), columns.size()));
-    for (std::size_t f = 0; f < fields.size(); ++f) read_field(fields[f], line_number, columns[f]);
+      lines.complain("has {} fields; the first line has {}", fields.size(), columns.size());
+    for (std::size_t f = 0; f < fields.size(); ++f) read_field(fields[f], lines.number(), columns[f]);
   }
   if (columns.empty())
-    throw MeshError(fmt::format("is empty; the first line must name the columns{}",
-                                of_points ? ", including x_um, y_um and z_um" : ""));
+    throw MeshError("is empty; the first line must name the columns{}",
+                    of_points ? ", including x_um, y_um and z_um" : "");
   return columns;
 }
 
@@ -114,7 +107,7 @@ auto parsed(const std::filesystem::path& file, const Parse& parse) {
   try {
     return parse(text);
   } catch (const MeshError& error) {
-    throw MeshError(fmt::format("{}: {}", file.string(), error.what()));
+    throw MeshError("{}: {}", file.string(), error.what());
   }
 }
 
@@ -141,14 +134,14 @@ PointTable points_in_csv(std::string_view text) {
 
 PointTable read_points_file(const std::filesystem::path& file) { return parsed(file, points_in_csv); }
 
-std::map<std::string, CellArray> read_cell_table(const std::filesystem::path& file) {
+std::map<std::string, std::vector<double>> read_cell_table(const std::filesystem::path& file) {
   return parsed(file, [](std::string_view text) {
-    std::map<std::string, CellArray> arrays;
+    std::map<std::string, std::vector<double>> arrays;
     std::vector<Column> columns = columns_in_csv(text, false);
     for (Column& column : columns) {
       if (column.text_line > 0) throw_text(column);
       if (!arrays.emplace(column.name, std::move(column.values)).second)
-        throw MeshError(fmt::format("line 1: names column {} twice", column.name));
+        throw MeshError("line 1: names column {} twice", column.name);
     }
     return arrays;
   });

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <tuple>
 
 #include "tissue/shapes/polygon_surface.hpp"
 #include "tissue/tissue.hpp"
@@ -15,6 +16,10 @@ struct PolygonFile {
   PolygonSurface surface;                   // as in the file: unchecked, but corners are existing vertices
   std::map<std::string, CellArray> arrays;  // one number per face; NaN: no value
   std::vector<std::string> remarks = {};    // what was corrected or omitted
+
+  static auto parts(auto& file) {
+    return std::tie(file.surface.vertices, file.surface.polygons, file.arrays, file.remarks);
+  }
 };
 
 /// Parse Wavefront OBJ: lines `v x y z` and `f a b c ...`; others are ignored. No arrays.
@@ -33,5 +38,37 @@ PolygonFile read_polygon_file(const std::filesystem::path& file);
 // Readers chosen by read_polygon_file.
 PolygonFile read_vtk_polygons(const std::filesystem::path& file);
 PolygonFile read_vertex_model(const std::filesystem::path& file);
+
+/// Table as in pandas: an index number per row, and named numeric columns.
+struct NumberedTable {
+  std::vector<double> index;
+  std::map<std::string, std::vector<double>> columns;
+};
+
+/// Tables of a vertex model in two or three dimensions.
+struct VertexModelTables {
+  NumberedTable vertices;  // x, y and optionally z
+  NumberedTable edges;     // half-edges along the outlines of faces: srce, trgt, face
+  NumberedTable faces;     // any columns
+
+  static auto parts(auto& tables) {
+    auto& [vertices, edges, faces] = tables;
+    return std::tie(vertices.index, vertices.columns, edges.index, edges.columns, faces.index, faces.columns);
+  }
+};
+
+/// Return faces in the order of their table, with its columns as arrays; faces without edges are omitted. MeshError if
+/// columns or referenced rows are missing, or the edges of a face do not form one ring. Edges of a ring that run
+/// against most others are reversed.
+PolygonFile polygons_of(const VertexModelTables& tables);
+
+/// Join the faces of each label to one polygon, in order of labels; faces with label 0, less or NaN belong to no cell.
+/// Its corners are the vertices where three cells, or two and the outside, meet. Arrays become means over the faces.
+/// Cells with fewer than three corners are omitted, with a remark. MeshError if the file has no array of this name, a
+/// cell is in pieces or has a hole, or none is left.
+PolygonFile cells_of_labels(const PolygonFile& file, const std::string& label_array);
+
+/// Return advice to name a label array, if all faces are triangles and an array numbers groups of them; else nothing.
+std::string label_advice(const PolygonFile& file);
 
 }  // namespace plica

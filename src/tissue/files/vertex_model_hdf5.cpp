@@ -6,11 +6,10 @@
 #include <array>
 #include <optional>
 
-#include "core/bytes.hpp"
 #include "core/files.hpp"
 #include "tissue/files/child_reading.hpp"
-#include "tissue/files/vertex_model.hpp"
-#include "tissue/hexahedral_mesh.hpp"
+#include "tissue/files/polygon_file.hpp"
+#include "tissue/mesh_input.hpp"
 
 namespace plica {
 namespace {
@@ -65,7 +64,7 @@ std::vector<double> numbers_in(hid_t group, const std::string& name, Shape& shap
   void* const to = is_boolean ? static_cast<void*>(bytes.data()) : values.data();
   const hid_t type_read = is_boolean ? hid_t{type} : H5T_NATIVE_DOUBLE;
   if (!values.empty() && H5Dread(data, type_read, H5S_ALL, H5S_ALL, H5P_DEFAULT, to) < 0)
-    throw MeshError(fmt::format("HDF5 cannot read {}; save it without compression, or with gzip", name));
+    throw MeshError("HDF5 cannot read {}; save it without compression, or with gzip", name);
   if (is_boolean) values.assign(bytes.begin(), bytes.end());
   return values;
 }
@@ -91,14 +90,13 @@ std::vector<std::string> texts_in(hid_t group, const std::string& name) {
 }
 
 NumberedTable table_in(hid_t file, const std::string& name) {
-  if (!has(file, name))
-    throw MeshError(fmt::format("no table \"{}\"; write vert, edge and face by tyssue's save_datasets", name));
+  if (!has(file, name)) throw MeshError("no table \"{}\"; write vert, edge and face by tyssue's save_datasets", name);
   const Handle group(H5Gopen2(file, name.c_str(), H5P_DEFAULT), H5Gclose);
   if (!group.is_open() || !has(group, "axis1"))
     throw MeshError(
-        fmt::format("the table \"{}\" is not in pandas' \"fixed\" format; write it by tyssue's "
-                    "save_datasets, or DataFrame.to_hdf without format=\"table\"",
-                    name));
+        "the table \"{}\" is not in pandas' \"fixed\" format; write it by tyssue's save_datasets, or DataFrame.to_hdf "
+        "without format=\"table\"",
+        name);
   NumberedTable table;
   Shape shape;
   table.index = numbers_in(group, "axis1", shape);
@@ -113,28 +111,7 @@ NumberedTable table_in(hid_t file, const std::string& name) {
   return table;
 }
 
-void put_table(const NumberedTable& table, std::string& bytes) {
-  std::string columns;
-  for (const auto& [name, values] : table.columns) {
-    put(name, columns);
-    put(values, columns);
-  }
-  put(table.index, bytes);
-  put(columns, bytes);
-}
-
-NumberedTable take_table(std::string_view& bytes) {
-  NumberedTable table;
-  table.index = take<std::vector<double>>(bytes);
-  const auto columns = take<std::string>(bytes);
-  for (std::string_view rest = columns; !rest.empty();) {
-    const auto name = take<std::string>(rest);
-    table.columns[name] = take<std::vector<double>>(rest);
-  }
-  return table;
-}
-
-std::string table_bytes(const std::filesystem::path& path) {
+VertexModelTables tables_in(const std::filesystem::path& path) {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
@@ -143,21 +120,15 @@ std::string table_bytes(const std::filesystem::path& path) {
     throw MeshError(
         "it contains three-dimensional cells; give a surface with one cell per face: of a monolayer, Python's "
         "plica.polygons_of_monolayer takes apical faces and heights");
-  std::string bytes;
-  for (const char* name : {"vert", "edge", "face"}) put_table(table_in(file, name), bytes);
-  return bytes;
+  return {table_in(file, "vert"), table_in(file, "edge"), table_in(file, "face")};
 }
 
 }  // namespace
 
 PolygonFile read_vertex_model(const std::filesystem::path& path) {
   read_file(path);  // throws if unreadable
-  const std::string bytes = read_in_child(
-      path, [&] { return table_bytes(path); }, "HDF5");
-  std::string_view rest = bytes;
-  VertexModelTables tables;
-  for (NumberedTable* table : {&tables.vertices, &tables.edges, &tables.faces}) *table = take_table(rest);
-  return polygons_of(tables);
+  return polygons_of(read_in_child(
+      path, [&] { return tables_in(path); }, "HDF5"));
 }
 
 }  // namespace plica

@@ -1,4 +1,4 @@
-// Sheet one cell thick: polygons on a surface, extruded inward to prisms.
+// Sheet one cell thick: polygons on a surface, extruded inward along its normals to prisms.
 #pragma once
 
 #include <span>
@@ -7,9 +7,22 @@
 
 #include "tissue/prisms.hpp"
 #include "tissue/shapes/polygon_surface.hpp"
-#include "tissue/shapes/vertex_bends.hpp"
+#include "tissue/shapes/star_surface.hpp"
 
 namespace plica {
+
+/// Normal and curvature of a polygon surface at a vertex.
+struct VertexBend {
+  Vec3 normal;             // unit, outward
+  double least_radius_um;  // least radius of convex curvature; infinity if flat or concave
+};
+
+/// Estimate from polygons only: area-weighted mean normal about a vertex, and the fitted quadratic surface through it.
+/// An unused vertex gets +z.
+std::vector<VertexBend> vertex_bends(const PolygonSurface& polygons);
+
+/// Evaluate on a smooth surface that contains the vertices.
+std::vector<VertexBend> vertex_bends(const PolygonSurface& polygons, const StarSurface& surface);
 
 struct ExtrudedSheet : PrismSheet {
   std::string asked_um;         // the height, or "asked for" if each cell has its own
@@ -32,10 +45,6 @@ ExtrudedSheet extrude(const PolygonSurface& polygons, std::span<const VertexBend
 
 /// Return a remark if cells are lower than requested.
 void note_lower_cells(const ExtrudedSheet& sheet, std::vector<std::string>& remarks);
-
-/// Return the volume of each prism, um^3: lateral faces ruled between apical and basal sides, faces fanned about their
-/// middles.
-std::vector<double> prism_volumes(const PrismSheet& sheet);
 
 /// Return the height of each prism: mean distance from its apical to its basal vertices, um.
 std::vector<double> prism_heights(const PrismSheet& sheet);

@@ -10,10 +10,8 @@
 #include <set>
 #include <utility>
 
-#include "tissue/hexahedral_mesh.hpp"
-#include "tissue/pieces.hpp"
-#include "tissue/place.hpp"
-#include "tissue/shapes/vertex_bends.hpp"
+#include "tissue/mesh_input.hpp"
+#include "tissue/shapes/extrusion.hpp"
 
 namespace plica {
 namespace {
@@ -24,14 +22,8 @@ constexpr double sharpest_fold_cosine = -0.9;  // of the angle between two neigh
 constexpr double deepest_rim_angle_deg = 220;  // to which a corner of one face may go in to be no corner
 constexpr double farthest_move = 0.4;          // of the mean edge, by which mending may move a vertex
 
-Vec3 middle_of(const PolygonSurface& surface, std::size_t face) {
-  Vec3 sum = Vec3::Zero();
-  for (const std::size_t vertex : surface.polygons[face]) sum += surface.vertices[vertex];
-  return sum / static_cast<double>(surface.polygons[face].size());
-}
-
 std::string face_at(const PolygonSurface& surface, std::size_t face) {
-  return fmt::format("face {} at {}", face, place_text(middle_of(surface, face)));
+  return fmt::format("face {} at {}", face, place_text(mean_corner(surface.vertices, surface.polygons[face])));
 }
 
 void check_corners(const PolygonSurface& surface) {
@@ -39,19 +31,18 @@ void check_corners(const PolygonSurface& surface) {
   for (std::size_t face = 0; face < surface.polygons.size(); ++face) {
     std::vector<std::size_t> corners = surface.polygons[face];
     if (corners.size() < 3)
-      throw MeshError(
-          fmt::format("face {} has {} corners; a cell requires at least three: remove the face, or correct it", face,
-                      corners.size()));
+      throw MeshError("face {} has {} corners; a cell requires at least three: remove the face, or correct it", face,
+                      corners.size());
     for (const std::size_t vertex : corners) {
       const Vec3& p = surface.vertices[vertex];
       if (!p.allFinite() || p.cwiseAbs().maxCoeff() > largest_coordinate_um)
-        throw MeshError(fmt::format("vertex {} of face {} is at ({}, {}, {}); coordinates must be finite, in um",
-                                    vertex, face, p.x(), p.y(), p.z()));
+        throw MeshError("vertex {} of face {} is at ({}, {}, {}); coordinates must be finite, in um", vertex, face,
+                        p.x(), p.y(), p.z());
     }
     std::ranges::sort(corners);
     if (const auto twice = std::ranges::adjacent_find(corners); twice != corners.end())
-      throw MeshError(fmt::format("{} has vertex {} twice, at {}", face_at(surface, face), *twice,
-                                  place_text(surface.vertices[*twice])));
+      throw MeshError("{} has vertex {} twice, at {}", face_at(surface, face), *twice,
+                      place_text(surface.vertices[*twice]));
   }
 }
 
@@ -76,45 +67,22 @@ double mean_side(const PolygonSurface& surface) {
   return sum / static_cast<double>(count);
 }
 
-// For each vertex the first one in its place. They are sorted along a direction that no grid is likely to be square to,
-// so that few are compared.
-std::vector<std::size_t> first_in_place(const PolygonSurface& surface) {
-  const Vec3 direction(0.5772157, 0.2146018, 0.7878593);
-  const double tolerance = same_place * mean_side(surface);
-  std::vector<char> is_used(surface.vertices.size(), 0);
-  for (const auto& polygon : surface.polygons)
-    for (const std::size_t vertex : polygon) is_used[vertex] = 1;
-  std::vector<std::pair<double, std::size_t>> sorted;
-  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
-    if (is_used[v]) sorted.emplace_back(direction.dot(surface.vertices[v]), v);
-  std::ranges::sort(sorted);
-  std::vector<std::size_t> first(surface.vertices.size());
-  std::iota(first.begin(), first.end(), std::size_t{0});
-  for (std::size_t i = 0; i < sorted.size(); ++i)
-    for (std::size_t j = i + 1; j < sorted.size() && sorted[j].first - sorted[i].first <= tolerance; ++j) {
-      const auto [low, high] = std::minmax(sorted[i].second, sorted[j].second);
-      if ((surface.vertices[low] - surface.vertices[high]).norm() <= tolerance)
-        first[high] = std::min(first[high], first[low]);
-    }
-  return first;
-}
-
 // Neighbours share vertices after that.
 std::size_t merge_vertices(PolygonSurface& surface, bool mend) {
-  const std::vector<std::size_t> first = first_in_place(surface);
+  std::vector<std::size_t> used;
+  for (const auto& polygon : surface.polygons) used.insert(used.end(), polygon.begin(), polygon.end());
+  const std::vector<std::size_t> first =
+      first_in_place(surface.vertices, std::move(used), same_place * mean_side(surface));
   std::size_t merged = 0;
   for (std::size_t v = 0; v < first.size(); ++v) {
     if (first[v] == v) continue;
     ++merged;
     if (!mend)
-      throw MeshError(
-          fmt::format("vertices {} and {} coincide at {}; let neighbours share their vertices: set "
-                      "mend = true",
-                      first[v], v, place_text(surface.vertices[v])));
+      throw MeshError("vertices {} and {} coincide at {}; let neighbours share their vertices: set mend = true",
+                      first[v], v, place_text(surface.vertices[v]));
   }
   for (auto& polygon : surface.polygons)
-    for (std::size_t& vertex : polygon)
-      while (first[vertex] != vertex) vertex = first[vertex];
+    for (std::size_t& vertex : polygon) vertex = first[vertex];
   return merged;
 }
 
@@ -156,10 +124,9 @@ std::vector<std::vector<Across>> faces_across(const PolygonSurface& surface) {
   std::vector<std::vector<Across>> across(surface.polygons.size());
   for (const auto& [edge, at] : faces) {
     if (at.size() > 2)
-      throw MeshError(
-          fmt::format("the edge from {} to {} belongs to {} faces, {}, {} and {} among them; an edge may belong to two",
+      throw MeshError("the edge from {} to {} belongs to {} faces, {}, {} and {} among them; an edge may belong to two",
                       place_text(surface.vertices[edge.first]), place_text(surface.vertices[edge.second]), at.size(),
-                      at[0].first, at[1].first, at[2].first));
+                      at[0].first, at[1].first, at[2].first);
     if (at.size() < 2) continue;
     const bool alike = at[0].second == at[1].second;
     across[at[0].first].push_back({at[1].first, alike});
@@ -184,9 +151,9 @@ std::vector<std::size_t> keep_one_piece(PolygonSurface& surface, bool keep_large
         std::ranges::find_if(pieces.piece_of, [&](std::size_t piece) { return piece != largest; }) -
         pieces.piece_of.begin());
     throw MeshError(
-        fmt::format("the surface is not one piece but {}; {} is joined to the largest by no edge: set embryo.keep = "
-                    "\"largest\", or join them (corners of neighbours may lie at most {:.2g} um apart)",
-                    pieces.text("cells"), face_at(surface, apart), same_place * mean_side(surface)));
+        "the surface is not one piece but {}; {} is joined to the largest by no edge: set embryo.keep = \"largest\", "
+        "or join them (corners of neighbours may lie at most {:.2g} um apart)",
+        pieces.text("cells"), face_at(surface, apart), same_place * mean_side(surface));
   }
   remarks.push_back(fmt::format("the largest of {} was kept", pieces.text("cells")));
   std::vector<std::vector<std::size_t>> polygons;
@@ -205,8 +172,8 @@ std::vector<bool> unlike_first(const PolygonSurface& surface) {
     for (const Across& other : across[reached[i]]) {
       const int wanted = turn[reached[i]] ^ static_cast<int>(other.runs_alike);
       if (turn[other.face] == 1 - wanted)
-        throw MeshError(fmt::format("{} and face {} cannot both face outward: the surface is one-sided",
-                                    face_at(surface, reached[i]), other.face));
+        throw MeshError("{} and face {} cannot both face outward: the surface is one-sided",
+                        face_at(surface, reached[i]), other.face);
       if (turn[other.face] == wanted) continue;
       turn[other.face] = wanted;
       reached.push_back(other.face);
@@ -229,7 +196,8 @@ std::size_t turn_faces(PolygonSurface& surface, bool mend, bool& is_closed) {
   is_closed = std::ranges::none_of(edges, [](const PolygonEdge& edge) { return edge.right == no_polygon; });
   double volume = 0;
   for (std::size_t face = 0; face < turned.size(); ++face)
-    volume += middle_of(surface, face).dot(area_vector(surface.vertices, surface.polygons[face]));
+    volume += mean_corner(surface.vertices, surface.polygons[face])
+                  .dot(area_vector(surface.vertices, surface.polygons[face]));
   if (is_closed && volume < 0) {
     for (std::size_t face = 0; face < turned.size(); ++face) turn(face);
     turned.flip();
@@ -237,10 +205,10 @@ std::size_t turn_faces(PolygonSurface& surface, bool mend, bool& is_closed) {
   }
   if (count > 0 && !mend)
     throw MeshError(
-        fmt::format("{} is wound the wrong way, as are {} of {} faces; order corners "
-                    "counter-clockwise seen from outside, or set mend = true",
-                    face_at(surface, static_cast<std::size_t>(std::ranges::find(turned, true) - turned.begin())), count,
-                    turned.size()));
+        "{} is wound the wrong way, as are {} of {} faces; order corners counter-clockwise seen from outside, or set "
+        "mend = true",
+        face_at(surface, static_cast<std::size_t>(std::ranges::find(turned, true) - turned.begin())), count,
+        turned.size());
   return count;
 }
 
@@ -250,8 +218,8 @@ std::string apical_side_text(const PolygonSurface& surface) {
   for (const auto& polygon : surface.polygons) sum += area_vector(surface.vertices, polygon);
   const Vec3 way = sum.normalized();
   return fmt::format(
-      ", by majority: the apical side faces ({:.2f}, {:.2f}, {:.2f}); for the other side, reverse most "
-      "faces of the file",
+      ", by majority: the apical side faces ({:.2f}, {:.2f}, {:.2f}); for the other side, reverse most faces of the "
+      "file",
       way.x(), way.y(), way.z());
 }
 
@@ -281,9 +249,8 @@ void check_fans(const PolygonSurface& surface) {
     }
     if (reached == about.size()) continue;
     throw MeshError(
-        fmt::format("the surface touches itself at vertex {} at {}: face {} and others meet there but share no edge "
-                    "with the rest",
-                    v, place_text(surface.vertices[v]), about.front().face));
+        "the surface touches itself at vertex {} at {}: face {} and others meet there but share no edge with the rest",
+        v, place_text(surface.vertices[v]), about.front().face);
   }
 }
 
@@ -330,17 +297,18 @@ void check_folds(const PolygonSurface& surface) {
   for (const auto& polygon : surface.polygons) normals.push_back(area_vector(surface.vertices, polygon).normalized());
   for (const PolygonEdge& edge : polygon_edges(surface)) {
     if (edge.right == no_polygon || normals[edge.left].dot(normals[edge.right]) > sharpest_fold_cosine) continue;
-    throw MeshError(fmt::format(
+    throw MeshError(
         "{} and its neighbour, face {}, are folded onto each other at the edge from {} to {}; if the sheet is "
         "periodic, omit the faces that cross its boundary",
         face_at(surface, edge.left), edge.right, place_text(surface.vertices[edge.vertices[0]]),
-        place_text(surface.vertices[edge.vertices[1]])));
+        place_text(surface.vertices[edge.vertices[1]]));
   }
 }
 
 double warp_deg(const PolygonSurface& surface, std::size_t face) {
   const auto& polygon = surface.polygons[face];
-  const Vec3 middle = middle_of(surface, face), normal = area_vector(surface.vertices, polygon).normalized();
+  const Vec3 middle = mean_corner(surface.vertices, polygon),
+             normal = area_vector(surface.vertices, polygon).normalized();
   double least = 1;
   for (std::size_t k = 0; polygon.size() > 3 && k < polygon.size(); ++k) {
     const Vec3 one = (surface.vertices[polygon[k]] - middle)
@@ -358,14 +326,12 @@ void check_faces(const PolygonSurface& surface, bool mended) {
     const std::string flaw =
         polygon_flaw(surface.vertices, polygon, area_vector(surface.vertices, polygon).normalized());
     if (!flaw.empty())
-      throw MeshError(fmt::format("{} {}{}; split it, or move its corners", face_at(surface, face), flaw,
-                                  mended ? "" : " (mend = true sharpens wide angles)"));
+      throw MeshError("{} {}{}; split it, or move its corners", face_at(surface, face), flaw,
+                      mended ? "" : " (mend = true sharpens wide angles)");
     const double warp = warp_deg(surface, face);
     if (warp > largest_warp_deg)
-      throw MeshError(
-          fmt::format("{} is far from flat: its corners lie up to {:.0f} degrees out of its plane; {} "
-                      "are allowed",
-                      face_at(surface, face), warp, largest_warp_deg));
+      throw MeshError("{} is far from flat: its corners lie up to {:.0f} degrees out of its plane; {} are allowed",
+                      face_at(surface, face), warp, largest_warp_deg);
   }
 }
 
@@ -389,10 +355,10 @@ MendedPolygons mend_shapes(PolygonSurface& surface, const PolygonOptions& option
     if ((surface.vertices[v] - start[v]).norm() <= limit_um) continue;
     surface.vertices = start;
     check_faces(surface, true);  // a face is wrong, as a rule
-    throw MeshError(fmt::format(
-        "its short edges and wide angles cannot be repaired: vertex {} at {} would move by more than {:.3g} um; "
-        "set mend = false, or lower least_edge_ratio",
-        v, place_text(start[v]), limit_um));
+    throw MeshError(
+        "its short edges and wide angles cannot be repaired: vertex {} at {} would move by more than {:.3g} um; set "
+        "mend = false, or lower least_edge_ratio",
+        v, place_text(start[v]), limit_um);
   }
   return mended;
 }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tissue/shapes/polygon_mending.hpp"
+#include "tissue/shapes/polygon_surface.hpp"
 
 namespace plica {
 

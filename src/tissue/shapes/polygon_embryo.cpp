@@ -4,19 +4,87 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <optional>
 
-#include "tissue/hexahedral_mesh.hpp"
-#include "tissue/place.hpp"
-#include "tissue/shapes/even_points.hpp"
+#include "tissue/mesh_input.hpp"
 #include "tissue/shapes/extrusion.hpp"
 #include "tissue/shapes/given_surface.hpp"
+#include "tissue/shapes/star_surface.hpp"
 #include "tissue/shapes/surface_polygons.hpp"
 
 namespace plica {
 namespace {
+
+constexpr int egg_degree = 5;
+
+double even_term(const Vec3& d) { return d.x() * d.x() * (1 - d.x() * d.x()); }
+double odd_term(const Vec3& d) { return d.z() * d.x() * d.x() * (1 - d.x() * d.x() / 2); }
+
+// The outline in the plane y = 0 of the scaled egg.
+struct Outline {
+  double even, odd;
+
+  // At an angle from +x; towards the back where it is positive.
+  [[nodiscard]] Vec3 at(double angle) const {
+    const Vec3 d(std::cos(angle), 0, std::sin(angle));
+    return (1 + even * even_term(d) + odd * odd_term(d)) * d;
+  }
+
+  [[nodiscard]] double half_length() const {
+    // x has one maximum near the pole: golden section.
+    double low = -1, high = 1;
+    for (int i = 0; i < 80; ++i) {
+      const double third = (high - low) * 0.382;
+      if (at(low + third).x() < at(high - third).x())
+        low += third;
+      else
+        high -= third;
+    }
+    return at(low).x();
+  }
+
+  // Sag of the dorsal (side 1) or ventral side (-1), relative to the half height.
+  [[nodiscard]] double sag(int side) const {
+    const double x = 0.6 * half_length();
+    double low = 0, high = std::numbers::pi / 2;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (at(side * middle).x() > x ? low : high) = middle;
+    }
+    return 1 - std::abs(at(side * low).z());
+  }
+};
+
+// Newton's method by differences: the terms that give these sags (as shares of the half height).
+Outline outline_with(double belly_sag, double back_sag) {
+  Outline outline{0, 0};
+  const Eigen::Vector2d wanted(belly_sag, back_sag);
+  const auto sags = [](const Outline& o) { return Eigen::Vector2d(o.sag(-1), o.sag(1)); };
+  for (int iteration = 0; iteration < 50; ++iteration) {
+    const Eigen::Vector2d now = sags(outline);
+    if ((now - wanted).norm() < 1e-10) break;
+    constexpr double h = 1e-5;
+    Eigen::Matrix2d slopes;
+    slopes.col(0) = (sags({outline.even + h, outline.odd}) - now) / h;
+    slopes.col(1) = (sags({outline.even, outline.odd + h}) - now) / h;
+    const Eigen::Vector2d step = slopes.fullPivLu().solve(wanted - now);
+    const double share = std::min(1.0, 0.1 / step.norm());
+    outline.even += share * step[0];
+    outline.odd += share * step[1];
+  }
+  // Beyond a half the pole or the middle of the back is hollow; that is no egg.
+  const bool found = (sags(outline) - wanted).norm() < 1e-8;
+  if (!found || outline.even > 0.48 || outline.even + std::abs(outline.odd) > 0.5)
+    throw MeshError(
+        "no egg shape has sags of {:.3g} and {:.3g} % of its height; an ellipsoid has 10 %, a measured embryo 9.4 and "
+        "3.9 %",
+        50 * belly_sag, 50 * back_sag);
+  return outline;
+}
 
 Tissue build_on(const StarSurface& surface, const Vectors& points, const PolygonCells& cells) {
   const CellPolygons polygons = polygons_of_points(points, surface, {.least_edge = cells.least_edge_ratio});
@@ -36,9 +104,9 @@ StarSurface smooth_surface(const PolygonSurface& surface) {
   const double allowed = largest_roughness * fit.surface.half_axes().minCoeff();
   if (fit.largest_um > allowed)
     throw MeshError(
-        fmt::format("vertex {} at {} lies {:.2g} um from the fitted smooth surface; {:.2g} um "
-                    "are allowed: smooth the surface there",
-                    fit.largest_row, place_text(surface.vertices[fit.largest_row]), fit.largest_um, allowed));
+        "vertex {} at {} lies {:.2g} um from the fitted smooth surface; {:.2g} um are allowed: smooth the surface "
+        "there",
+        fit.largest_row, place_text(surface.vertices[fit.largest_row]), fit.largest_um, allowed);
   return fit.surface;
 }
 
@@ -63,6 +131,27 @@ Vec3 area_centroid(const PolygonSurface& surface) {
 }
 
 }  // namespace
+
+StarSurface egg_surface(const EggShape& shape) {
+  for (const double length : {shape.length_um, shape.width_um, shape.height_um})
+    if (!(length > 0) || !std::isfinite(length))
+      throw MeshError("an egg of {:.4g} x {:.4g} x {:.4g} um; lengths must be positive", shape.length_um,
+                      shape.width_um, shape.height_um);
+  Vec3 half_axes = 0.5 * Vec3(shape.length_um, shape.width_um, shape.height_um);
+  Outline outline{0, 0};
+  if (shape.belly_sag_um || shape.back_sag_um) {
+    const double usual = 0.2 * half_axes.z();
+    outline = outline_with(shape.belly_sag_um.value_or(usual) / half_axes.z(),
+                           shape.back_sag_um.value_or(usual) / half_axes.z());
+    half_axes.x() /= outline.half_length();
+  }
+  // The terms are polynomials of degree 5, so a fit to enough directions finds their harmonics to rounding.
+  const Vectors directions = even_directions(400);
+  std::vector<double> radii;
+  for (const Vec3& d : directions) radii.push_back(1 + outline.even * even_term(d) + outline.odd * odd_term(d));
+  const std::vector<double> weights(directions.size(), 1.0);
+  return {Mat3::Identity(), half_axes, fit_harmonics(directions, radii, weights, egg_degree)};
+}
 
 CellArray of_kept(const CellArray& of_faces, const std::vector<std::size_t>& kept) {
   CellArray values;
@@ -115,8 +204,7 @@ Tissue build_about_points(const MeasuredPoints& measured, const PolygonCells& ce
   Tissue tissue = build_on(fit.surface, points, cells);
   tissue.remarks.insert(
       tissue.remarks.begin(),
-      fmt::format("the points lie {:.2g} um (root mean square) from a smooth surface; row {} is farthest, "
-                  "{:.2g} um",
+      fmt::format("the points lie {:.2g} um (root mean square) from a smooth surface; row {} is farthest, {:.2g} um",
                   fit.rms_um, fit.largest_row, fit.largest_um));
   return tissue;
 }

@@ -4,18 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
-#include "tissue/hexahedral_mesh.hpp"
-#include "tissue/place.hpp"
+#include "tissue/mesh_input.hpp"
 
 namespace plica {
 namespace {
-
-Vec3 mean_corner(const Vectors& vertices, const std::vector<std::size_t>& polygon) {
-  Vec3 sum = Vec3::Zero();
-  for (const std::size_t vertex : polygon) sum += vertices[vertex];
-  return sum / static_cast<double>(polygon.size());
-}
 
 // One side of a polygon, to be matched with that of its neighbour.
 struct Side {
@@ -40,16 +34,94 @@ std::vector<Side> sorted_sides(const PolygonSurface& surface) {
     const bool third = i + 2 < sides.size() && sides[i + 2].low == sides[i].low && sides[i + 2].high == sides[i].high;
     if (third || sides[i].rises == sides[i + 1].rises)
       throw MeshError(
-          fmt::format("the edge between vertices {} and {} at {} {}; each edge must belong to two "
-                      "cells that traverse it in opposite directions",
-                      sides[i].low, sides[i].high, place_text(surface.vertices[sides[i].low]),
-                      third ? "belongs to more than two cells" : "runs the same way in two cells"));
+          "the edge between vertices {} and {} at {} {}; each edge must belong to two cells that traverse it in "
+          "opposite directions",
+          sides[i].low, sides[i].high, place_text(surface.vertices[sides[i].low]),
+          third ? "belongs to more than two cells" : "runs the same way in two cells");
     ++i;
   }
   return sides;
 }
 
+constexpr std::size_t most_passes = 60;
+constexpr double overshoot = 1.02;  // of what is wanted, so that the passes come to an end
+
+// Moves that the edges and angles of one pass ask for; they are added up, so their order does not matter.
+class Moves {
+ public:
+  explicit Moves(const PolygonSurface& surface)
+      : periods_(surface.periods), moves_(surface.vertices.size(), Vec3::Zero()) {}
+
+  void add(std::size_t vertex, const Vec3& move) {
+    moves_[periods_.original(vertex)] += move;
+    any_ = true;
+  }
+
+  [[nodiscard]] bool any() const { return any_; }
+
+  void apply(const MendingGround& ground, Vectors& vertices) const {
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+      if (const Vec3& move = moves_[periods_.original(v)]; !move.isZero(0))
+        vertices[v] = ground.allowed(v, vertices[v] + move);
+  }
+
+ private:
+  const Periods& periods_;  // images move together
+  Vectors moves_;
+  bool any_ = false;
+};
+
+std::size_t lengthen_edges(const std::vector<PolygonEdge>& edges, const MendingGround& ground, double least_um,
+                           const Vectors& vertices, Moves& moves) {
+  std::size_t count = 0;
+  for (const PolygonEdge& edge : edges) {
+    const auto [from, to] = edge.vertices;
+    const Vec3 direction = ground.along(edge);
+    const double length = (vertices[to] - vertices[from]).dot(direction);
+    if (length >= least_um) continue;
+    ++count;
+    const Vec3 half = 0.5 * (overshoot * least_um - length) * direction;
+    moves.add(from, -half);
+    moves.add(to, half);
+  }
+  return count;
+}
+
+std::size_t sharpen_corners(const PolygonSurface& surface, const Vectors& normals, double largest_deg, Moves& moves) {
+  const double bend = (180 - largest_deg) * std::numbers::pi / 180;
+  std::size_t count = 0;
+  for (std::size_t p = 0; p < surface.polygons.size(); ++p) {
+    const auto& polygon = surface.polygons[p];
+    const std::vector<double> angles = polygon_angles_deg(surface.vertices, polygon, normals[p]);
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      if (angles[k] <= largest_deg) continue;
+      ++count;
+      const Vec3& before = surface.vertices[polygon[(k + polygon.size() - 1) % polygon.size()]];
+      const Vec3& at = surface.vertices[polygon[k]];
+      const Vec3& after = surface.vertices[polygon[(k + 1) % polygon.size()]];
+      // A corner at height h over the line between its neighbours bends by about h (1 / l1 + 1 / l2).
+      const double l1 = (at - before).norm(), l2 = (after - at).norm();
+      const Vec3 outward = (after - before).cross(normals[p]).normalized();
+      const double height = (at - before).dot(outward), wanted = overshoot * bend * l1 * l2 / (l1 + l2);
+      moves.add(polygon[k], std::max(0.0, wanted - height) * outward);
+    }
+  }
+  return count;
+}
+
+double mean_length(const std::vector<PolygonEdge>& edges, const Vectors& vertices) {
+  double sum = 0;
+  for (const PolygonEdge& edge : edges) sum += (vertices[edge.vertices[1]] - vertices[edge.vertices[0]]).norm();
+  return sum / static_cast<double>(edges.size());
+}
+
 }  // namespace
+
+Vec3 mean_corner(const Vectors& vertices, const std::vector<std::size_t>& polygon) {
+  Vec3 sum = Vec3::Zero();
+  for (const std::size_t vertex : polygon) sum += vertices[vertex];
+  return sum / static_cast<double>(polygon.size());
+}
 
 Vec3 area_vector(const Vectors& vertices, const std::vector<std::size_t>& polygon) {
   const Vec3 centre = mean_corner(vertices, polygon);
@@ -73,14 +145,6 @@ PolygonFan fan_about(const Vectors& vertices, const std::vector<std::size_t>& po
   else
     fan.centroid = centre;
   return fan;
-}
-
-std::vector<double> polygon_areas(const PolygonSurface& surface) {
-  std::vector<double> areas;
-  areas.reserve(surface.polygons.size());
-  for (const auto& polygon : surface.polygons)
-    areas.push_back(fan_about(surface.vertices, polygon, mean_corner(surface.vertices, polygon)).area);
-  return areas;
 }
 
 std::vector<std::vector<std::size_t>> polygon_neighbours(const PolygonSurface& surface) {
@@ -108,20 +172,62 @@ std::vector<PolygonEdge> polygon_edges(const PolygonSurface& surface) {
   return edges;
 }
 
-std::vector<double> edge_lengths(const PolygonSurface& surface) {
-  std::vector<double> lengths;
-  for (const PolygonEdge& edge : polygon_edges(surface))
-    lengths.push_back((surface.vertices[edge.vertices[1]] - surface.vertices[edge.vertices[0]]).norm());
-  return lengths;
+std::vector<double> polygon_angles_deg(const Vectors& vertices, const std::vector<std::size_t>& polygon,
+                                       const Vec3& normal) {
+  std::vector<double> angles;
+  angles.reserve(polygon.size());
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vec3& at = vertices[polygon[k]];
+    Vec3 in = at - vertices[polygon[(k + polygon.size() - 1) % polygon.size()]];
+    Vec3 out = vertices[polygon[(k + 1) % polygon.size()]] - at;
+    in -= in.dot(normal) * normal;
+    out -= out.dot(normal) * normal;
+    angles.push_back(180 - std::atan2(in.cross(out).dot(normal), in.dot(out)) * 180 / std::numbers::pi);
+  }
+  return angles;
 }
 
-std::vector<std::size_t> corner_counts(const PolygonSurface& surface) {
-  std::vector<std::size_t> counts;
-  for (const auto& polygon : surface.polygons) {
-    if (counts.size() <= polygon.size()) counts.resize(polygon.size() + 1, 0);
-    ++counts[polygon.size()];
+MendedPolygons mend_polygons(const MendingGround& ground, const PolygonOptions& options, PolygonSurface& surface) {
+  MendedPolygons mended;
+  Vectors& vertices = surface.vertices;
+  const Vectors start = vertices;
+  const std::vector<PolygonEdge> edges = polygon_edges(surface);
+  const double least_um = options.least_edge * mean_length(edges, vertices);
+  for (;; ++mended.passes) {
+    Moves moves(surface);
+    mended.left_edges = lengthen_edges(edges, ground, least_um, vertices, moves);
+    mended.left_corners = sharpen_corners(surface, ground.normals, options.largest_angle_deg, moves);
+    if (mended.passes == 0) {
+      mended.lengthened_edges = mended.left_edges;
+      mended.sharpened_corners = mended.left_corners;
+    }
+    if (!moves.any() || mended.passes == most_passes) break;
+    moves.apply(ground, vertices);
   }
-  return counts;
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+    mended.furthest_move_um = std::max(mended.furthest_move_um, (vertices[v] - start[v]).norm());
+  return mended;
+}
+
+std::vector<std::string> remarks_on(const MendedPolygons& mended) {
+  std::vector<std::string> remarks;
+  if (mended.lengthened_edges + mended.sharpened_corners > 0)
+    remarks.push_back(
+        fmt::format("{} short edges and {} wide angles were repaired: their vertices moved by at most {:.2g} um",
+                    mended.lengthened_edges, mended.sharpened_corners, mended.furthest_move_um));
+  if (mended.left_edges + mended.left_corners > 0)
+    remarks.push_back(fmt::format("{} edges remain short, and {} angles wide", mended.left_edges, mended.left_corners));
+  return remarks;
+}
+
+std::string polygon_flaw(const Vectors& vertices, const std::vector<std::size_t>& polygon, const Vec3& normal) {
+  const std::vector<double> angles = polygon_angles_deg(vertices, polygon, normal);
+  double turn = 0;
+  for (const double angle : angles) turn += 180 - angle;
+  const double widest = *std::ranges::max_element(angles);
+  // Convex at every corner and once around: it cannot cross itself.
+  if (!(std::abs(turn - 360) < 1) || polygon.size() < 3) return "crosses itself";
+  return widest < 179 ? "" : fmt::format("is not convex, with a corner of {:.0f} degrees", widest);
 }
 
 }  // namespace plica

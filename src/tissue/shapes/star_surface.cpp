@@ -1,17 +1,16 @@
 #include "tissue/shapes/star_surface.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "tissue/hexahedral_mesh.hpp"
-#include "tissue/shapes/solid_harmonics.hpp"
+#include "tissue/mesh_input.hpp"
 
 namespace plica {
 namespace {
+
+constexpr int place(int l, int m) { return l * l + l + m; }
 
 constexpr std::size_t sample_count = 500;
 
@@ -37,7 +36,167 @@ double least_eigenvalue(const Eigen::Matrix2d& hessian, const Eigen::Matrix2d& m
   return half_sum - std::sqrt(std::max(0.0, half_sum * half_sum - hessian.determinant() / det));
 }
 
+constexpr std::size_t least_points = 12;
+constexpr std::size_t points_per_coefficient = 3;
+constexpr double widest_hole_cosine = 0.2;  // about 78 degrees from a direction to the next point: no surface around
+constexpr double largest_share = 0.1;       // of a point's radius, that it may be from the surface
+
+void check_points(const Vectors& points) {
+  if (points.size() < least_points)
+    throw MeshError("{} points; a closed surface requires at least {}", points.size(), least_points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].allFinite()) throw MeshError("row {} is not a point; give three finite lengths in um", i);
+    if (points[i].norm() < 1e-9) throw MeshError("row {} is at the origin; points must surround the origin", i);
+  }
+  // Every direction needs a point somewhere near it.
+  Vectors directions;
+  directions.reserve(points.size());
+  for (const Vec3& point : points) directions.push_back(point.normalized());
+  for (const Vec3& direction : even_directions(200)) {
+    double nearest = -1;
+    for (const Vec3& other : directions) nearest = std::max(nearest, direction.dot(other));
+    if (nearest < widest_hole_cosine)
+      throw MeshError(
+          "no point lies toward ({:.2f}, {:.2f}, {:.2f}), seen from the origin; points must surround the origin: shift "
+          "them; an open sheet is made by Python's plica.polygons_of_centres",
+          direction.x(), direction.y(), direction.z());
+  }
+}
+
+struct Frame {
+  Mat3 axes;
+  Vec3 half_axes;
+};
+
+// The ellipsoid x . A x = 1 about the origin, of least squares.
+Frame frame_of(const Vectors& points) {
+  double scale = 0;
+  for (const Vec3& point : points) scale = std::max(scale, point.norm());
+  Eigen::MatrixXd rows(points.size(), 6);
+  Mat3 moments = Mat3::Zero();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3 p = points[i] / scale;
+    rows.row(static_cast<Eigen::Index>(i)) << p.x() * p.x(), p.y() * p.y(), p.z() * p.z(), 2 * p.x() * p.y(),
+        2 * p.x() * p.z(), 2 * p.y() * p.z();
+    moments += p * p.transpose() / static_cast<double>(points.size());
+  }
+  const Eigen::VectorXd a =
+      rows.colPivHouseholderQr().solve(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(points.size())));
+  Mat3 A;
+  A << a[0], a[3], a[4], a[3], a[1], a[5], a[4], a[5], a[2];
+  Eigen::SelfAdjointEigenSolver<Mat3> solver(A);
+  Vec3 half_axes = solver.eigenvalues().cwiseMax(0).cwiseInverse().cwiseSqrt();
+  // No ellipsoid: the points' second moments serve as well, the harmonics follow what is left.
+  if (!half_axes.allFinite() || half_axes.maxCoeff() > 2) {
+    solver.compute(moments);
+    half_axes = (3 * solver.eigenvalues()).cwiseMax(0).cwiseSqrt();
+  }
+  if (half_axes.minCoeff() < 1e-3)
+    throw MeshError(
+        "the points lie in a plane; give points on a closed surface around the origin; an open sheet is made by "
+        "Python's plica.polygons_of_centres");
+  Frame frame{solver.eigenvectors(), scale * half_axes};
+  if (frame.axes.determinant() < 0) frame.axes.col(2) *= -1;
+  return frame;
+}
+
+std::vector<double> fit_coefficients(const Vectors& points, const Frame& frame, int degree) {
+  Vectors directions;
+  std::vector<double> radii, weights;
+  for (const Vec3& point : points) {
+    const Vec3 u = (frame.axes.transpose() * point).cwiseQuotient(frame.half_axes);
+    radii.push_back(u.norm());
+    directions.emplace_back(u / radii.back());
+    // A change of the scaled radius moves the surface by this many um along its normal, about.
+    weights.push_back(1 / directions.back().cwiseQuotient(frame.half_axes).norm());
+  }
+  return fit_harmonics(directions, radii, weights, degree);
+}
+
 }  // namespace
+
+void evaluate_harmonics(const Vec3& direction, int degree, HarmonicValues& values) {
+  const double x = direction.x(), y = direction.y(), z = direction.z();
+  double real = 1, imaginary = 0;  // R_mm
+  for (int m = 0; m <= degree; ++m) {
+    if (m > 0) {
+      const double next = (x * real - y * imaginary) / (2 * m);
+      imaginary = (x * imaginary + y * real) / (2 * m);
+      real = next;
+    }
+    // (l^2 - m^2) R_lm = (2l - 1) z R_(l-1)m - R_(l-2)m on the unit sphere.
+    double before[2] = {0, 0}, last[2] = {real, imaginary};
+    for (int l = m; l <= degree; ++l) {
+      if (l > m) {
+        const double scale = 1.0 / (l * l - m * m);
+        for (int part = 0; part < 2; ++part) {
+          const double next = scale * ((2 * l - 1) * z * last[part] - before[part]);
+          before[part] = last[part];
+          last[part] = next;
+        }
+      }
+      values[place(l, -m)] = last[1];
+      values[place(l, m)] = last[0];
+    }
+  }
+}
+
+std::vector<double> harmonic_norms(int degree) {
+  std::vector<double> norms(harmonic_count(degree));
+  for (int l = 0; l <= degree; ++l)
+    for (int m = 0; m <= l; ++m) {
+      const double product = std::exp(std::lgamma(l + m + 1) + std::lgamma(l - m + 1));
+      norms[place(l, m)] = norms[place(l, -m)] = std::sqrt((2 * l + 1) * product * (m > 0 ? 2 : 1));
+    }
+  return norms;
+}
+
+std::vector<double> fit_harmonics(const Vectors& directions, const std::vector<double>& radii,
+                                  const std::vector<double>& weights, int degree) {
+  const std::size_t count = harmonic_count(degree);
+  const std::vector<double> norms = harmonic_norms(degree);
+  Eigen::MatrixXd rows(directions.size(), count);
+  Eigen::VectorXd right(directions.size());
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    HarmonicValues values;
+    evaluate_harmonics(directions[i], degree, values);
+    const auto row = static_cast<Eigen::Index>(i);
+    for (std::size_t k = 0; k < count; ++k) rows(row, static_cast<Eigen::Index>(k)) = weights[i] * norms[k] * values[k];
+    right[row] = weights[i] * radii[i];
+  }
+  const Eigen::VectorXd solution = rows.householderQr().solve(right);
+  return {solution.begin(), solution.end()};
+}
+
+std::vector<double> harmonic_derivative(const std::vector<double>& coefficients, int degree, int axis) {
+  std::vector<double> derivative(coefficients.size(), 0.0);
+  // Adds `factor` times Re or Im R_(l-1)m; places outside of the triangle |m| <= l - 1 are 0, and so is Im R_l0.
+  const auto add = [&](int l, int m, bool real, double factor) {
+    if (m > l - 1 || (m == 0 && !real)) return;
+    derivative[place(l - 1, real ? m : -m)] += factor;
+  };
+  for (int l = 1; l <= degree; ++l)
+    for (int m = 0; m <= l; ++m) {
+      const double real = coefficients[place(l, m)], imaginary = m > 0 ? coefficients[place(l, -m)] : 0;
+      if (axis == 2) {
+        add(l, m, true, real);
+        add(l, m, false, imaginary);
+      } else if (m == 0) {
+        add(l, 1, axis == 0, -real);
+      } else if (axis == 0) {
+        add(l, m - 1, true, real / 2);
+        add(l, m + 1, true, -real / 2);
+        add(l, m - 1, false, imaginary / 2);
+        add(l, m + 1, false, -imaginary / 2);
+      } else {
+        add(l, m - 1, false, -real / 2);
+        add(l, m + 1, false, -real / 2);
+        add(l, m - 1, true, imaginary / 2);
+        add(l, m + 1, true, imaginary / 2);
+      }
+    }
+  return derivative;
+}
 
 // X(a, b) = S rho(n) n with n = d + a e1 + b e2, made a unit vector, at a = b = 0.
 struct StarSurface::Chart {
@@ -84,9 +243,9 @@ StarSurface::StarSurface(const Mat3& axes, const Vec3& half_axes_um, const std::
     samples_.push_back(to_real_ * (radius * direction));
     if (!(radius > 0))
       throw MeshError(
-          fmt::format("the surface passes through the origin in the direction ({:.3g}, {:.3g}, {:.3g}); "
-                      "move the surface so that the origin is well inside",
-                      samples_.back().x(), samples_.back().y(), samples_.back().z()));
+          "the surface passes through the origin in the direction ({:.3g}, {:.3g}, {:.3g}); move the surface so that "
+          "the origin is well inside",
+          samples_.back().x(), samples_.back().y(), samples_.back().z());
     for (const double bend_radius : bend(samples_.back()).radii)
       if (bend_radius > 0) least_radius_ = std::min(least_radius_, bend_radius);
   }
@@ -268,6 +427,39 @@ Vectors even_directions(std::size_t count) {
     directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
   }
   return directions;
+}
+
+StarFit fit_star_surface(const Vectors& points, int degree) {
+  check_points(points);
+  degree = std::clamp(degree, 0, largest_harmonic_degree);
+  while (degree > 0 && harmonic_count(degree) * points_per_coefficient > points.size()) --degree;
+  const Frame frame = frame_of(points);
+  StarFit fit{StarSurface(frame.axes, frame.half_axes, fit_coefficients(points, frame, degree)), 0, 0, 0};
+
+  double squares = 0;
+  std::size_t far_count = 0, farthest = 0;
+  double farthest_share = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double distance = std::abs(fit.surface.closest(points[i]).signed_distance_um);
+    squares += distance * distance;
+    if (distance > fit.largest_um) {
+      fit.largest_um = distance;
+      fit.largest_row = i;
+    }
+    const double share = distance / points[i].norm();
+    if (share > largest_share) ++far_count;
+    if (share > farthest_share) {
+      farthest_share = share;
+      farthest = i;
+    }
+  }
+  if (far_count > 0)
+    throw MeshError(
+        "row {} at {} is {:.2g} um from the smooth closed surface through the points, and {} of {} rows are further "
+        "than a tenth of their radius; give points on one surface that every ray from the origin meets once",
+        farthest, place_text(points[farthest]), farthest_share * points[farthest].norm(), far_count, points.size());
+  fit.rms_um = std::sqrt(squares / static_cast<double>(points.size()));
+  return fit;
 }
 
 }  // namespace plica

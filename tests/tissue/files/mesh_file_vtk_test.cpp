@@ -7,7 +7,7 @@
 #include "core/files.hpp"
 #include "record/mesh_writer.hpp"
 #include "support/own_folder.hpp"
-#include "tissue/files/mesh_file.hpp"
+#include "tissue/hexahedral_mesh.hpp"
 #include "tissue/shapes/embryo.hpp"
 
 namespace {

@@ -10,6 +10,7 @@
 #include "tissue/files/labelled_faces.hpp"
 #include "tissue/files/points_file.hpp"
 #include "tissue/files/vertex_model.hpp"
+#include "tissue/hexahedral_mesh.hpp"
 
 namespace {
 

@@ -3,7 +3,6 @@
 
 #include "support/testing.hpp"
 #include "tissue/mesh_quality.hpp"
-#include "tissue/shapes/surface_grid.hpp"
 
 namespace {
 

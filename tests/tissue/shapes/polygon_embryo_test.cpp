@@ -7,10 +7,10 @@
 #include <chrono>
 
 #include "support/mesh_error.hpp"
+#include "support/prisms.hpp"
 #include "support/whole.hpp"
 #include "tissue/files/points_file.hpp"
 #include "tissue/mesh_quality.hpp"
-#include "tissue/shapes/even_points.hpp"
 #include "tissue/shapes/extrusion.hpp"
 #include "tissue/shapes/surface_polygons.hpp"
 

@@ -2,13 +2,12 @@
 #include "tissue/shapes/polygon_sheet.hpp"
 
 #include "support/mesh_error.hpp"
+#include "support/prisms.hpp"
 #include "support/whole.hpp"
 #include "tissue/division.hpp"
 #include "tissue/mesh_quality.hpp"
-#include "tissue/shapes/egg_surface.hpp"
-#include "tissue/shapes/even_points.hpp"
 #include "tissue/shapes/extrusion.hpp"
-#include "tissue/shapes/rectangle_polygons.hpp"
+#include "tissue/shapes/polygon_embryo.hpp"
 #include "tissue/shapes/surface_polygons.hpp"
 
 namespace {

@@ -2,8 +2,7 @@
 #include "tissue/shapes/star_surface.hpp"
 
 #include "support/mesh_error.hpp"
-#include "tissue/shapes/egg_surface.hpp"
-#include "tissue/shapes/solid_harmonics.hpp"
+#include "tissue/shapes/polygon_embryo.hpp"
 
 namespace {
 

@@ -3,11 +3,9 @@
 
 #include "support/mesh_error.hpp"
 #include "support/prisms.hpp"
-#include "tissue/shapes/egg_surface.hpp"
-#include "tissue/shapes/even_points.hpp"
-#include "tissue/shapes/polygon_mending.hpp"
+#include "tissue/shapes/extrusion.hpp"
+#include "tissue/shapes/polygon_embryo.hpp"
 #include "tissue/shapes/polygon_surface.hpp"
-#include "tissue/shapes/vertex_bends.hpp"
 
 namespace {
 
