@@ -131,9 +131,8 @@ class GivenActivities {
   /// Mark a cell that follows its program.
   static constexpr double as_programmed = -1;
 
-  /// Return the activities in an internal state, after `own` numbers of the law itself; empty if none are set.
-  GivenActivities(std::span<const double> internal, std::size_t own)
-      : given_(internal.size() > own ? internal.subspan(own) : std::span<const double>()) {}
+  /// View the end of an internal state; empty if none are set.
+  explicit GivenActivities(std::span<const double> given) : given_(given) {}
 
   /// Return the activity of a cell; empty if it follows its program.
   [[nodiscard]] std::optional<double> of(CellId cell) const {
@@ -147,10 +146,9 @@ class GivenActivities {
     return given_.empty() ? std::vector<double>() : inherited(division, std::vector(given_.begin(), given_.end()));
   }
 
-  /// Return an internal state with these activities, or without any.
-  [[nodiscard]] static std::vector<double> put(std::span<const double> internal, std::size_t own,
-                                               std::span<const double> activities) {
-    std::vector<double> result(internal.begin(), internal.begin() + static_cast<std::ptrdiff_t>(own));
+  /// Return the internal state of which these are the end, with other activities or without any.
+  [[nodiscard]] std::vector<double> put(std::span<const double> internal, std::span<const double> activities) const {
+    std::vector<double> result(internal.begin(), internal.end() - static_cast<std::ptrdiff_t>(given_.size()));
     result.insert(result.end(), activities.begin(), activities.end());
     return result;
   }

@@ -62,7 +62,7 @@ class Contraction final : public Law {
                                                     std::span<const Vec3> positions) const override;
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& /*tissue*/,
                                                             const Division& division) const override {
-    return GivenActivities(internal, 0).after_division(division);
+    return GivenActivities(internal).after_division(division);
   }
 
   [[nodiscard]] const Program& program() const { return program_; }
@@ -73,9 +73,9 @@ class Contraction final : public Law {
   [[nodiscard]] bool is_active() const override { return true; }
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
                                                   std::span<const double> internal) const override;
-  [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
+  [[nodiscard]] std::vector<double> with_activities(std::span<const double> /*internal*/,
                                                     std::span<const double> activities) const override {
-    return GivenActivities::put(internal, 0, activities);
+    return {activities.begin(), activities.end()};
   }
   [[nodiscard]] std::vector<double> program_points_s() const override {
     return pattern_.with_ablations(program_.delayed_points_s(delays_s()));

@@ -87,17 +87,18 @@ std::optional<double> Cortex::activity_of(CellId cell, double time_s, std::span<
 
 double Cortex::rest_area_before(std::size_t face, const Step& step) const {
   if (!flows()) return rest_areas_[face];
-  return rest_areas_[face] *
-         ((1 + step.ahead) * step.internal[face] - step.ahead * step.internal[faces_.size() + face]);
+  const Memory remembered = memory(step.internal);
+  return rest_areas_[face] * ((1 + step.ahead) * remembered.areas[face] - step.ahead * remembered.areas_before[face]);
 }
 
 // Activity of a cell, without its strength.
 double Cortex::activity(CellId cell, double time_s, std::span<const double> internal) const {
   const double part = pattern_.remaining(cell, time_s);
-  if (const auto told = given(internal).of(cell)) return part * *told;
+  const Memory remembered = memory(internal);
+  if (const auto told = remembered.given.of(cell)) return part * *told;
   const double delay_s = pattern_.delays_s[cell.index()], factor = part * pattern_.pulse(cell, time_s);
   if (!own_.is_used()) return factor * rule_.program.delayed_at(delay_s, time_s);
-  const double own = internal[area_numbers() + cell.index()];
+  const double own = remembered.own[cell.index()];
   if (!own_.starts()) return factor * own * rule_.program.delayed_at(delay_s, time_s);
   return own == OwnState::not_yet ? 0 : factor * rule_.program.delayed_at(own, time_s);
 }
@@ -106,7 +107,7 @@ double Cortex::activity(CellId cell, double time_s, std::span<const double> inte
 double Cortex::stiffening(CellId cell, const Step& step) const {
   const double part = pattern_.remaining(cell, step.end_time_s);
   if (!own_.starts()) return part * rule_.stiffness_program.at(step.end_time_s);
-  const double own = step.internal[area_numbers() + cell.index()];
+  const double own = memory(step.internal).own[cell.index()];
   return part * rule_.stiffness_program.at(own == OwnState::not_yet ? 0 : step.end_time_s - own);
 }
 
@@ -221,6 +222,17 @@ double Cortex::energy(const Step& step) const {
   return chunks_.sum_over_elements([&](std::size_t f) { return respond(f, now[f], step, true).energy; });
 }
 
+Cortex::Memory Cortex::memory(std::span<const double> internal) const {
+  const auto take = [&](bool is_used, std::size_t count) {
+    const auto part = internal.first(is_used ? std::min(count, internal.size()) : 0);
+    internal = internal.subspan(part.size());
+    return part;
+  };
+  const auto areas = take(flows(), faces_.size()), areas_before = take(flows(), faces_.size());
+  const auto own = take(own_.is_used(), pattern_.cells.size());
+  return {areas, areas_before, own, GivenActivities(internal)};
+}
+
 std::vector<double> Cortex::first_internal(const Tissue& tissue) const {
   std::vector<double> internal;
   if (flows()) internal.assign(2 * faces_.size(), 1);
@@ -228,19 +240,17 @@ std::vector<double> Cortex::first_internal(const Tissue& tissue) const {
 }
 
 std::vector<double> Cortex::next_internal(const Step& step) const {
+  const Memory before = memory(step.internal);
   std::vector<double> internal;
   if (flows()) {
     internal = areas(step.positions);
     const double r = step.rate_s / rule_.relaxation_s;
     for (std::size_t f = 0; f < faces_.size(); ++f)
       internal[f] = (rest_area_before(f, step) + r * internal[f]) / ((1 + r) * rest_areas_[f]);
-    internal.insert(internal.end(), step.internal.begin(),
-                    step.internal.begin() + static_cast<std::ptrdiff_t>(faces_.size()));
+    internal = joined(std::move(internal), before.areas);
   }
-  if (own_.is_used())
-    internal = joined(std::move(internal),
-                      own_.numbers(step.positions, step.end_time_s, step.internal.subspan(area_numbers())));
-  return joined(std::move(internal), given(step.internal).numbers());
+  if (own_.is_used()) internal = joined(std::move(internal), own_.numbers(step.positions, step.end_time_s, before.own));
+  return joined(std::move(internal), before.given.numbers());
 }
 
 // A face comes from the one with its nodes, else from all between its cells. A face between daughters comes from none.
@@ -307,21 +317,20 @@ std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const Division
 
 std::vector<double> Cortex::internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                     const Division& division) const {
+  const Memory before = memory(internal);
   std::vector<double> after;
   if (flows()) {
     const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(division));
     const Origins origins(*this, division);
-    for (const std::size_t first : {std::size_t{0}, faces_.size()})
+    for (const std::span<const double> areas : {before.areas, before.areas_before})
       for (const Face& face : faces) {
         const std::vector<std::size_t> from = origins.of(face);
-        after.push_back(from.empty() ? 1 : origins.mean(from, internal.subspan(first, faces_.size())));
+        after.push_back(from.empty() ? 1 : origins.mean(from, areas));
       }
   }
-  if (own_.is_used()) {
-    const std::span<const double> own = internal.subspan(area_numbers(), pattern_.cells.size());
-    after = joined(std::move(after), inherited(division, std::vector(own.begin(), own.end())));
-  }
-  return joined(std::move(after), given(internal).after_division(division));
+  if (own_.is_used())
+    after = joined(std::move(after), inherited(division, std::vector(before.own.begin(), before.own.end())));
+  return joined(std::move(after), before.given.after_division(division));
 }
 
 std::vector<double> Cortex::program_points_s() const {

@@ -61,7 +61,7 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   /// Override the activity of the tension; stiffness keeps its program.
   [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
                                                     std::span<const double> activities) const override {
-    return GivenActivities::put(internal, own_numbers(), activities);
+    return memory(internal).given.put(internal, activities);
   }
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
@@ -91,11 +91,13 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   class Origins;  // faces before a division that faces after it come from
   void take_rest_areas();
   void inherit_faces(const Origins& origins, const Cortex& before, std::span<const Vec3> positions);
-  [[nodiscard]] std::size_t area_numbers() const { return flows() ? 2 * faces_.size() : 0; }
-  [[nodiscard]] std::size_t own_numbers() const {
-    return area_numbers() + (own_.is_used() ? pattern_.cells.size() : 0);
-  }
-  [[nodiscard]] GivenActivities given(std::span<const double> internal) const { return {internal, own_numbers()}; }
+  // An internal state, in its order. Parts that are not used are empty.
+  struct Memory {
+    std::span<const double> areas, areas_before;  // faces; stress-free / reference, at the beginning of both steps
+    std::span<const double> own;                  // cells; OwnState
+    GivenActivities given;
+  };
+  [[nodiscard]] Memory memory(std::span<const double> internal) const;
   [[nodiscard]] double activity(CellId cell, double time_s, std::span<const double> internal) const;
   [[nodiscard]] double stiffening(CellId cell, const Step& step) const;
   template <class OfCell>

@@ -92,9 +92,6 @@ ConstraintParts CellVolumes::parts() const {
   return parts;
 }
 
-// About the square of a face's area, V^(4/3).
-double CellVolumes::gradient_scale(std::size_t cell) const { return std::cbrt(targets_[cell]) * targets_[cell]; }
-
 double CellVolumes::rounding(const Tissue& tissue, double position_rounding) const {
   double thinnest = 0;  // largest of an element's faces over its volume: how much a shift of a face changes it
   for (const HexPoints& rest : tissue.element_rest_shape)

@@ -2,6 +2,7 @@
 // docs/theory/cell_volume.md.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -46,7 +47,10 @@ class CellVolumes final : public Constraint {
                            std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(std::span<const Vec3> positions, std::span<const double> pressures,
                    TangentSink& tangent) const override;
-  [[nodiscard]] double gradient_scale(std::size_t cell) const override;
+  /// About the square of a face's area, V^(4/3).
+  [[nodiscard]] double gradient_scale(std::size_t cell) const override {
+    return std::cbrt(targets_[cell]) * targets_[cell];
+  }
   [[nodiscard]] double rounding(const Tissue& tissue, double position_rounding) const override;
   /// Return the constraints of the tissue after growth.
   [[nodiscard]] CellVolumes grown(const Tissue& tissue) const;

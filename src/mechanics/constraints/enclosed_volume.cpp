@@ -148,8 +148,6 @@ void EnclosedVolume::add_tangent(std::span<const Vec3> x, std::span<const double
              [&](NodeId a, NodeId b, const Vec3& turn) { tangent.add_block(a, b, cross_matrix(turn)); });
 }
 
-double EnclosedVolume::gradient_scale(std::size_t /*function*/) const { return gradient_scale_; }
-
 double EnclosedVolume::rounding(const Tissue& /*tissue*/, double position_rounding) const {
   return std::sqrt(gradient_scale_) * position_rounding / target_;
 }

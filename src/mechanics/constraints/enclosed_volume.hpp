@@ -33,7 +33,7 @@ class EnclosedVolume final : public Constraint {
                            std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(std::span<const Vec3> positions, std::span<const double> multipliers,
                    TangentSink& tangent) const override;
-  [[nodiscard]] double gradient_scale(std::size_t function) const override;
+  [[nodiscard]] double gradient_scale(std::size_t /*function*/) const override { return gradient_scale_; }
   [[nodiscard]] double rounding(const Tissue& tissue, double position_rounding) const override;
   [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const Division& division,
                                                            std::span<const Vec3> positions) const override;

@@ -309,14 +309,6 @@ std::vector<double> SelfContact::packed(const std::vector<Pair>& pairs, std::spa
   return numbers;
 }
 
-std::vector<double> SelfContact::first_internal(const Tissue& tissue) const {
-  return packed(pairs(tissue.rest_positions), {});
-}
-
-std::vector<double> SelfContact::next_internal(const Step& step) const {
-  return packed(pairs(step.positions, step.internal), step.internal);
-}
-
 // Calls take(pair, how far it is inside the distance) for every pair that is pressed.
 template <class Take>
 void SelfContact::for_pressed(const Step& step, const Take& take) const {

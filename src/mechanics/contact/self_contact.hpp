@@ -55,8 +55,12 @@ class SelfContact final : public Law {
   [[nodiscard]] int pattern_revision(std::span<const double> internal) const override {
     return internal.empty() ? 0 : static_cast<int>(internal.front());
   }
-  [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
-  [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
+  [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override {
+    return packed(pairs(tissue.rest_positions), {});
+  }
+  [[nodiscard]] std::vector<double> next_internal(const Step& step) const override {
+    return packed(pairs(step.positions, step.internal), step.internal);
+  }
   /// Return a law without pairs until the next accepted step; also for a part of the tissue, since contact belongs to
   /// no part.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,

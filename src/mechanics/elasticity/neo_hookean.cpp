@@ -14,7 +14,8 @@ namespace plica {
 namespace {
 
 constexpr std::size_t batch_size = ElementChunks::batch_size;
-constexpr std::size_t numbers_a_batch = 8 * 6 * batch_size;  // of a symmetric matrix at every Gauss point
+constexpr std::size_t numbers_a_batch = 8 * 6 * batch_size;
+static_assert(sizeof(FlowedBatch) == numbers_a_batch * sizeof(double));
 
 Vec3 gauss_point(int g) { return hex_reference_nodes[static_cast<std::size_t>(g)] / std::sqrt(3.0); }
 
@@ -30,9 +31,14 @@ Mat3 gauss_jacobian(const HexPoints& points, int g) {
   return jacobian;
 }
 
-// Index of the first number of a Gauss point among all batches; the next is batch_size further.
-std::size_t place_of(std::size_t element, int g) {
-  return (element / batch_size * 8 + static_cast<std::size_t>(g)) * 6 * batch_size + element % batch_size;
+std::span<FlowedBatch> batches_of(std::span<double> internal) {
+  return {reinterpret_cast<FlowedBatch*>(internal.data()), internal.size() / numbers_a_batch};
+}
+
+// First number of a Gauss point of an element; the next is batch_size further.
+template <class Batches>
+auto* first_of(const Batches& batches, std::size_t place, int g) {
+  return &batches[place / batch_size].points[g][0][place % batch_size];
 }
 
 void put(const Mat3& symmetric, double* first) {
@@ -94,26 +100,32 @@ void NeoHookean::fit(const Tissue& tissue, std::size_t place) {
   if (flows_) flow_batches_[place / batch_size].rates[lane] = relaxation_s > 0 ? 1 / relaxation_s : 0;
 }
 
+NeoHookean::Memory NeoHookean::memory(std::span<const double> internal) const {
+  if (!flows_) return {};
+  const auto* first = reinterpret_cast<const FlowedBatch*>(internal.data());
+  return {{first, batches_.size()}, {first + batches_.size(), batches_.size()}};
+}
+
 NeoHookeanStep NeoHookean::kernel_step(const Step& step) const {
+  const auto [now, earlier] = memory(step.internal);
   return {.batches = batches_.data(),
           .flows = flows_ ? flow_batches_.data() : nullptr,
           .elements = elements_.size(),
           .positions = numbers(step.positions),
           .semidefinite_tangent = step.semidefinite_tangent,
-          .flowed = step.internal.data(),
-          .flowed_earlier = flows_ ? step.internal.data() + batches_.size() * numbers_a_batch : nullptr,
+          .flowed = now.data(),
+          .flowed_earlier = earlier.data(),
           .ahead = step.ahead,
           .rate_s = step.rate_s};
 }
 
 Mat3 NeoHookean::flowed(std::span<const double> internal, ElementId element, int g) const {
-  return symmetric_at(&internal[place_of(element.index(), g)]);
+  return symmetric_at(first_of(memory(internal).now, element.index(), g));
 }
 
 Mat3 NeoHookean::flowed_before(std::size_t e, int g, const Step& step) const {
-  const double* now = &step.internal[place_of(e, g)];
-  const double* earlier = now + batches_.size() * numbers_a_batch;
-  return (1 + step.ahead) * symmetric_at(now) - step.ahead * symmetric_at(earlier);
+  const auto [now, earlier] = memory(step.internal);
+  return (1 + step.ahead) * symmetric_at(first_of(now, e, g)) - step.ahead * symmetric_at(first_of(earlier, e, g));
 }
 
 double NeoHookean::energy(const Step& step) const {
@@ -166,8 +178,9 @@ std::vector<double> NeoHookean::next_internal(const Step& step) const {
   std::vector<double> internal(2 * size);
   std::copy_n(step.internal.begin(), size, internal.begin() + static_cast<std::ptrdiff_t>(size));
   const NeoHookeanStep at = kernel_step(step);
-  chunks_.for_batches(
-      [&](std::size_t first, std::size_t last) { kernels().write_flowed(at, first, last, internal.data()); });
+  chunks_.for_batches([&](std::size_t first, std::size_t last) {
+    kernels().write_flowed(at, first, last, batches_of(internal).data());
+  });
   return internal;
 }
 
@@ -187,23 +200,25 @@ std::vector<double> NeoHookean::internal_after_division(std::span<const double> 
     for (int i = 0; i < 8; ++i) x += shape[i] * rest[i];
     return x;
   };
-  const std::size_t size_before = batches_.size() * numbers_a_batch;
   const std::size_t count = tissue.elements.size(), batches = (count + batch_size - 1) / batch_size;
   std::vector<double> after(2 * batches * numbers_a_batch);
+  const auto [now, earlier] = memory(internal);
+  const std::span<FlowedBatch> now_after = batches_of(after), earlier_after = now_after.subspan(batches);
   for (std::size_t place = 0; place < batches * batch_size; ++place)
     for (int g = 0; g < 8; ++g) {
       const std::size_t e = std::min(place, count - 1);
       const Vec3 x = where(tissue.element_rest_shape[e], g);
       double least = std::numeric_limits<double>::infinity();
-      std::size_t nearest = 0;
+      std::pair<std::size_t, int> nearest;
       for (const std::size_t old : of_cell[division.origin[tissue.element_cell[e].index()].index()])
         for (int h = 0; h < 8; ++h)
           if (const double distance = (where(rest_[old], h) - x).squaredNorm(); distance < least) {
             least = distance;
-            nearest = place_of(old, h);
+            nearest = {old, h};
           }
-      put(symmetric_at(&internal[nearest]), &after[place_of(place, g)]);
-      put(symmetric_at(&internal[size_before + nearest]), &after[batches * numbers_a_batch + place_of(place, g)]);
+      const auto [from, h] = nearest;
+      put(symmetric_at(first_of(now, from, h)), first_of(now_after, place, g));
+      put(symmetric_at(first_of(earlier, from, h)), first_of(earlier_after, place, g));
     }
   return after;
 }

@@ -53,6 +53,11 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8> {
   static constexpr std::array tables = {&generic::neo_hookean_kernels, &avx2::neo_hookean_kernels,
                                         &avx512::neo_hookean_kernels};
   void fit(const Tissue& tissue, std::size_t element);  // computes element data from the rest shape
+  // An internal state: batches at the beginning of this step, and of the previous step.
+  struct Memory {
+    std::span<const FlowedBatch> now, earlier;
+  };
+  [[nodiscard]] Memory memory(std::span<const double> internal) const;
   [[nodiscard]] Mat3 flowed_before(std::size_t element, int gauss_point, const Step& step) const;
   [[nodiscard]] NeoHookeanStep kernel_step(const Step& step) const;
 

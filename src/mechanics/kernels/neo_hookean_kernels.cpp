@@ -90,15 +90,11 @@ struct Flow {
   Mat frame;
   Lanes r;
 };
-inline std::size_t flowed_place(const Elements& e, int g) {
-  return (e.number * 8 + static_cast<std::size_t>(g)) * 6 * batch_size;
-}
 inline Flow flow_at(const NeoHookeanStep& step, const Elements& e, int g) {
-  const std::size_t place = flowed_place(e, g);
-  Sym before = load_symmetric(step.flowed + place, e.lane);
+  Sym before = load_symmetric(step.flowed[e.number].points[g][0], e.lane);
   if (step.ahead > 0)
     before = broadcast(1 + step.ahead) * before -
-             broadcast(step.ahead) * load_symmetric(step.flowed_earlier + place, e.lane);
+             broadcast(step.ahead) * load_symmetric(step.flowed_earlier[e.number].points[g][0], e.lane);
   const auto frame = [&](int k) { return load(e.flow->frames[g][k] + e.lane); };
   return {before,
           {{frame(0), frame(1), frame(2)}, {frame(3), frame(4), frame(5)}, {frame(6), frame(7), frame(8)}},
@@ -224,7 +220,8 @@ template <bool flows>
 }
 
 // All lanes of a batch, those that repeat its last element, too: kernels calculate there.
-[[gnu::flatten]] void write_flowed(const NeoHookeanStep& step, std::size_t first, std::size_t last, double* flowed) {
+[[gnu::flatten]] void write_flowed(const NeoHookeanStep& step, std::size_t first, std::size_t last,
+                                   FlowedBatch* flowed) {
   for (std::size_t b = first; b < last; ++b)
     for (int lane = 0; lane < batch_size; lane += width) {
       const Elements e{step.batches[b], step.flows + b, b, lane};
@@ -235,7 +232,7 @@ template <bool flows>
         const Mat F = slope(gauss_place(g), m) * transpose(transposed_inverse(D0));
         const Sym sum = before + r * symmetric_product(F, F), next = 1.0 / cube_root(determinant(sum)) * sum;
         const Lanes values[6] = {next.xx, next.yy, next.zz, next.xy, next.yz, next.zx};
-        for (int k = 0; k < 6; ++k) store_loose(values[k], flowed + flowed_place(e, g) + k * batch_size + lane);
+        for (int k = 0; k < 6; ++k) store_loose(values[k], flowed[b].points[g][k] + lane);
       }
     }
 }

@@ -98,6 +98,11 @@ struct alignas(64) FlowBatch {
   double rates[8];         // 1/tau, 1/s; 0: no relaxation
 };
 
+/// Relaxed rest shapes C_p, as NeoHookeanBatch::metrics: the memory of the law.
+struct FlowedBatch {
+  double points[8][6][8];  // Gauss points
+};
+
 /// Elements of a law and their positions.
 struct NeoHookeanStep {
   const NeoHookeanBatch* batches;
@@ -105,17 +110,16 @@ struct NeoHookeanStep {
   std::size_t elements;
   const double* positions;  // um
   bool semidefinite_tangent;
-  // Used only with relaxation: C_p at the beginning of this step and of the previous step, as in
-  // NeoHookeanBatch::metrics; the others as in Step.
-  const double* flowed;
-  const double* flowed_earlier;
+  // Used only with relaxation: C_p at the beginning of this step and of the previous step; the others as in Step.
+  const FlowedBatch* flowed;
+  const FlowedBatch* flowed_earlier;
   double ahead;
   double rate_s;
 };
 
 struct NeoHookeanKernels : ElementKernels<NeoHookeanStep, 8> {
   /// Write C_p at the end of the step.
-  void (*write_flowed)(const NeoHookeanStep&, std::size_t first, std::size_t last, double* flowed);
+  void (*write_flowed)(const NeoHookeanStep&, std::size_t first, std::size_t last, FlowedBatch* flowed);
 };
 
 struct alignas(64) VolumeBatch {

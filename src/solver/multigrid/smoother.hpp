@@ -1,4 +1,5 @@
-// Chebyshev smoothing with the inverses of the diagonal blocks.
+// Chebyshev smoothing with the inverses of the diagonal blocks, and an order of nodes with small distances between
+// neighbours, so that its products can follow one another through memory.
 //
 // The polynomial that is smallest on the upper part of the spectrum of D^-1 A: its degree and how far down it reaches
 // are what serves nearly incompressible cells best (docs/decisions/0007-multigrid.md). Degree and reach are the same
@@ -9,9 +10,52 @@
 #include <cmath>
 
 #include "solver/multigrid/matrix.hpp"
-#include "solver/multigrid/order.hpp"
 
 namespace plica::multigrid {
+
+// Appends the nodes that can be reached from the first, by their distance.
+inline void walk(const Rows& neighbours, int first, std::vector<char>& seen, std::vector<int>& order) {
+  std::size_t next = order.size();
+  order.push_back(first);
+  for (seen[first] = 1; next < order.size(); ++next)
+    for (const int node : neighbours.of(order[next])) {
+      if (seen[node]) continue;
+      seen[node] = 1;
+      order.push_back(node);
+    }
+}
+
+/// Return the place of each node, sorted by distance (in neighbours) from a node at one end of the mesh: rings about
+/// the axis of an embryo.
+inline std::vector<int> places_by_distance(const BlockPattern& pattern) {
+  const Rows neighbours = neighbours_of(pattern);
+  std::vector<int> order, places(pattern.nodes());
+  std::vector<char> seen(pattern.nodes(), 0);
+  for (int node = 0; node < pattern.nodes(); ++node) {
+    if (seen[node]) continue;
+    const std::size_t begin = order.size();
+    walk(neighbours, node, seen, order);
+    const int end = order.back();  // the farthest is at an end; from there once more
+    for (std::size_t k = begin; k < order.size(); ++k) seen[order[k]] = 0;
+    order.resize(begin);
+    walk(neighbours, end, seen, order);
+  }
+  for (int place = 0; place < pattern.nodes(); ++place) places[order[place]] = place;
+  return places;
+}
+
+/// Return the bounds of consecutive groups of at least `least` rows (fewer in the last), such that all columns of the
+/// rows of a group lie in it or in the two adjacent groups. If neighbours are far apart, there are few groups.
+inline std::vector<int> groups_of_rows(const Rows& matrix, int least) {
+  std::vector<int> bounds{0};
+  int row = 0, reach = 0;  // of the rows before it
+  while (bounds.back() < matrix.count()) {
+    bounds.push_back(std::min(matrix.count(), std::max(reach, bounds.back() + least)));
+    for (; row < bounds.back(); ++row)
+      if (!matrix.of(row).empty()) reach = std::max(reach, matrix.of(row).back() + 1);
+  }
+  return bounds;
+}
 
 // In pieces of a fixed size, so that threads do not change the order of sums.
 inline double dot(std::span<const float> a, std::span<const float> b) {

@@ -2,10 +2,11 @@
 // the matrix of that.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/multigrid/matrix.hpp"
-#include "solver/multigrid/order.hpp"
 
 namespace plica::multigrid {
 
@@ -58,6 +59,59 @@ inline void orthonormalise(Columns& Q, float* R) {
     Q.scale(column, independent ? 1 / left : 0);
     R[(motions + 1) * column] = static_cast<float>(independent ? left : 0);
   }
+}
+
+// The aggregate in which most of the neighbours are; the lowest where it is a tie.
+inline int most_frequent(std::span<const int> neighbours, const std::vector<int>& aggregate_of) {
+  std::vector<std::pair<int, int>> counts;
+  for (const int n : neighbours) {
+    if (aggregate_of[n] == -1) continue;
+    const auto found =
+        std::find_if(counts.begin(), counts.end(), [&](const auto& c) { return c.first == aggregate_of[n]; });
+    if (found == counts.end())
+      counts.emplace_back(aggregate_of[n], 1);
+    else
+      ++found->second;
+  }
+  int best = -1, most = 0;
+  for (const auto& [aggregate, count] : counts)
+    if (count > most || (count == most && aggregate < best)) {
+      best = aggregate;
+      most = count;
+    }
+  return best;
+}
+
+struct Aggregates {
+  int count = 0;
+  std::vector<int> of_node;  // -1: isolated node, omitted on the coarser level
+  Rows members;              // nodes of each aggregate
+};
+
+/// Make disjoint neighbourhoods: a node with all its neighbours if none is taken yet; each remaining node joins the
+/// aggregate with most of its neighbours. 27 nodes in a lattice of hexahedra, 18 in a sheet of one layer.
+inline Aggregates make_aggregates(const Rows& matrix) {
+  Aggregates result;
+  std::vector<int> first(matrix.count(), -1);
+  for (int node = 0; node < matrix.count(); ++node) {
+    const auto neighbours = matrix.of(node);  // itself among them
+    const bool free = std::all_of(neighbours.begin(), neighbours.end(), [&](int n) { return first[n] == -1; });
+    if (!free || neighbours.size() < 2) continue;
+    for (const int n : neighbours) first[n] = result.count;
+    ++result.count;
+  }
+  result.of_node = first;
+  for (int node = 0; node < matrix.count(); ++node)
+    if (first[node] == -1) result.of_node[node] = most_frequent(matrix.of(node), first);
+
+  Rows of_nodes;
+  for (const int aggregate : result.of_node) {
+    if (aggregate != -1) of_nodes.columns.push_back(aggregate);
+    of_nodes.starts.push_back(static_cast<int>(of_nodes.columns.size()));
+  }
+  Transposed members = transpose(of_nodes, result.count);
+  result.members = {std::move(members.starts), std::move(members.rows)};
+  return result;
 }
 
 /// Smoothed aggregation. T contains, per aggregate, an orthonormal basis of the rigid motions of its nodes; P = (I - w

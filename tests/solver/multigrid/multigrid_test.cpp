@@ -2,7 +2,6 @@
 #include "core/threads.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "solver/algebra/block_cholesky.hpp"
-#include "solver/multigrid/order.hpp"
 #include "solver/multigrid/smoother.hpp"
 #include "support/cubes.hpp"
 #include "support/models.hpp"
