@@ -16,9 +16,7 @@
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
 #include "scenario/setup.hpp"
-#include "scenario/watch.hpp"
 #include "study/run_study.hpp"
-#include "study/check_study.hpp"
 
 namespace plica {
 namespace {

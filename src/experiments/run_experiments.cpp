@@ -14,8 +14,6 @@
 #include "record/csv.hpp"
 #include "record/results.hpp"
 #include "record/run_directory.hpp"
-#include "scenario/differences.hpp"
-#include "record/series_rows.hpp"
 #include "scenario/print.hpp"
 #include "show/recorded_run.hpp"
 #include "show/report.hpp"

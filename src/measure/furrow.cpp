@@ -10,8 +10,6 @@
 #include "measure/closing.hpp"
 #include "measure/measure_set.hpp"
 #include "measure/observation.hpp"
-#include "tissue/facing.hpp"
-#include "measure/speed_history.hpp"
 #include "tissue/faces.hpp"
 #include "tissue/polygon_cell.hpp"
 

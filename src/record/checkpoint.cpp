@@ -15,7 +15,7 @@
 #include "core/child_process.hpp"
 #include "core/errors.hpp"
 #include "record/archive.hpp"
-#include "scenario/differences.hpp"
+#include "scenario/print.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

@@ -17,7 +17,6 @@
 #include "mechanics/energy.hpp"
 #include "record/results.hpp"
 #include "scenario/embryo_axes.hpp"
-#include "record/outcome.hpp"
 #include "scenario/check_tissue.hpp"
 #include "scenario/print.hpp"
 #include "scenario/words.hpp"

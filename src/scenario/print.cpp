@@ -266,6 +266,11 @@ std::string reference_markdown() {
   return text;
 }
 
+std::string KeyDifference::text() const {
+  const auto shown = [](const std::string& value) { return value.empty() ? "missing" : value; };
+  return fmt::format("{} was {} and is now {}", key, shown(a), shown(b));
+}
+
 std::vector<KeyDifference> scenario_differences(std::string_view a, std::string_view b) {
   std::map<std::string, KeyDifference> all;
   for (const auto& [key, value] : values_of(a)) all[key].a = value;

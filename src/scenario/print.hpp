@@ -25,6 +25,8 @@ std::string reference_markdown();
 /// Dotted key and its two values in TOML; empty where a scenario lacks the key.
 struct KeyDifference {
   std::string key, a, b;
+
+  [[nodiscard]] std::string text() const;  // "embryo.length_um was 60 and is now 70"
 };
 
 /// Compares two resolved scenarios (scenario.toml of a run) and returns differing keys in alphabetical order. Invalid

@@ -303,10 +303,10 @@ void begin_sets(const Scenario& scenario, const Model& model, KeptBySet& kept, s
                                      fmt::format("\"{}\" has nothing to measure without {}", set.name, set.needs),
                                      "remove it, or supply what it needs"));
   }
-  for (const Column* column : all_columns())
-    if (scenario.expect.contains(std::string(column->name)) && !column->set.empty() && !kept.contains(column->set))
+  for (const Column& column : columns())
+    if (scenario.expect.contains(std::string(column.name)) && !column.set.empty() && !kept.contains(column.set))
       errors.push_back(
-          diagnostic_at(scenario, fmt::format("expect.{}", column->name), "is not measured", set_remedy(column->name)));
+          diagnostic_at(scenario, fmt::format("expect.{}", column.name), "is not measured", set_remedy(column.name)));
 }
 
 }  // namespace

@@ -9,21 +9,15 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "core/base64.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/markup.hpp"
 #include "core/version.hpp"
 #include "measure/reference_run.hpp"
-#include "record/deflate.hpp"
 #include "record/results.hpp"
-#include "record/run_scenario.hpp"
-#include "scenario/differences.hpp"
 #include "scenario/embryo_axes.hpp"
 #include "scenario/print.hpp"
 #include "show/looks.hpp"
-#include "show/report_page.hpp"
-#include "show/report_run.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

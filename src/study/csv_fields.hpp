@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/byte_order_mark.hpp"
+#include "core/numbers.hpp"
 
 namespace plica {
 

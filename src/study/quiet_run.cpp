@@ -4,7 +4,6 @@
 #include <memory>
 #include <optional>
 
-#include "core/directory_lock.hpp"
 #include "core/errors.hpp"
 #include "core/version.hpp"
 #include "measure/measure_set.hpp"

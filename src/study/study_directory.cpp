@@ -47,11 +47,9 @@ constexpr const char* change_back = "revert the change, restart with --overwrite
 void require_unchanged(const fs::path& file, const std::string& now, const std::string& what, const char* since) {
   const std::vector<KeyDifference> all = scenario_differences(read_file(file), now);
   if (all.empty()) return;
-  const auto shown = [](const std::string& value) { return value.empty() ? "missing" : value; };
   const std::string others = all.size() > 1 ? fmt::format(" (and {} more)", all.size() - 1) : "";
-  throw UsageError(fmt::format("{}: the {} has changed since {}: {} was {} and is now {}{}; {}",
-                               file.parent_path().string(), what, since, all.front().key, shown(all.front().a),
-                               shown(all.front().b), others, change_back));
+  throw UsageError(fmt::format("{}: the {} has changed since {}: {}{}; {}", file.parent_path().string(), what, since,
+                               all.front().text(), others, change_back));
 }
 
 void require_same_scenario(const fs::path& directory, const StudyInput& input) {

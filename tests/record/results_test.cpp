@@ -18,7 +18,6 @@
 #include "record/summary.hpp"
 #include "simulation/division_rules.hpp"
 #include "simulation/run_warnings.hpp"
-#include "support/block_scenario.hpp"
 #include "support/own_folder.hpp"
 #include "support/prisms.hpp"
 #include "support/scenarios.hpp"

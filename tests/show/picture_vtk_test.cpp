@@ -10,7 +10,6 @@
 #include "show/boundary_surface.hpp"
 #include "show/looks.hpp"
 #include "show/picture_layout.hpp"
-#include "show/picture_scene.hpp"
 #include "show/report.hpp"
 #include "support/frames.hpp"
 #include "support/own_folder.hpp"

@@ -2,11 +2,9 @@
 // tried.
 #include <regex>
 
-#include "scenario/remedies.hpp"
 #include "core/errors.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/load.hpp"
-#include "simulation/pace.hpp"
 #include "simulation/run_warnings.hpp"
 #include "simulation/simulation.hpp"
 #include "support/scenarios.hpp"

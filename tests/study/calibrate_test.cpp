@@ -5,7 +5,6 @@
 
 #include <cstdlib>
 
-#include "core/directory_lock.hpp"
 #include "core/files.hpp"
 #include "record/archive.hpp"
 #include "record/results.hpp"

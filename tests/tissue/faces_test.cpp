@@ -5,7 +5,6 @@
 #include "support/whole.hpp"
 #include "tissue/lattice.hpp"
 #include "tissue/mirror.hpp"
-#include "tissue/rows.hpp"
 #include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 

@@ -4,7 +4,6 @@
 #include "support/tissues.hpp"
 #include "tissue/mesh_quality.hpp"
 #include "tissue/outer_shape.hpp"
-#include "tissue/shapes/egg_surface.hpp"
 #include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 

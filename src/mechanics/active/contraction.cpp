@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "mechanics/active/cell_pattern.hpp"
-#include "tissue/contractile_lines.hpp"
-#include "mechanics/active/given_activities.hpp"
 #include "tissue/division.hpp"
 #include "tissue/polygon_cell.hpp"
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/byte_order_mark.hpp"
+#include "core/numbers.hpp"
 #include "tissue/mesh_input.hpp"
 
 namespace plica {

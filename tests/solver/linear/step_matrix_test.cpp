@@ -6,7 +6,7 @@
 #include "mechanics/obstacles/vitelline.hpp"
 #include "solver/algebra/block_cholesky.hpp"
 #include "solver/linear/chequerboard_factor.hpp"
-#include "solver/linear/contact_border.hpp"
+#include "solver/linear/border.hpp"
 #include "solver/linear/directions.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/law_checks.hpp"

@@ -7,9 +7,7 @@
 #include "core/files.hpp"
 #include "support/mesh_error.hpp"
 #include "support/own_folder.hpp"
-#include "tissue/files/labelled_faces.hpp"
 #include "tissue/files/points_file.hpp"
-#include "tissue/files/vertex_model.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 
 namespace {
