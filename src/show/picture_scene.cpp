@@ -1,11 +1,10 @@
-#include "show/picture_layout.hpp"
-
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <utility>
 
 #include "show/boundary_surface.hpp"
+#include "show/picture_layout.hpp"
 
 namespace plica {
 namespace {

@@ -15,8 +15,8 @@ struct StudyHooks {
   std::function<bool()> stop_requested;                                 // polled often; once true, runs are abandoned
 };
 
-/// Make the runs of `runs` (in order; empty: all) that have no row yet and add their rows to the directory. Throws FileError if a
-/// row cannot be written; nothing is lost then.
+/// Make the runs of `runs` (in order; empty: all) that have no row yet and add their rows to the directory. Throws
+/// FileError if a row cannot be written; nothing is lost then.
 void run_study(const Study& study, StudyDirectory& directory, Workers workers, const std::vector<std::size_t>& runs,
                const StudyHooks& hooks);
 

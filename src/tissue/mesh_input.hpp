@@ -14,8 +14,8 @@
 
 namespace plica {
 
-/// Unusable mesh (a FileError). The text, which may have a format, names the cell and the problem, without the file name
-/// unless from read_mesh_file or read_frame.
+/// Unusable mesh (a FileError). The text, which may have a format, names the cell and the problem, without the file
+/// name unless from read_mesh_file or read_frame.
 class MeshError : public FileError {
  public:
   using FileError::FileError;

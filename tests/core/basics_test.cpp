@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <new>
+#include <thread>
 #include <type_traits>
 
 #include "core/background.hpp"
@@ -145,14 +146,6 @@ TEST(Background, AFaultIsToldOnceAndEndsTheWork) {
     background.finish();
     EXPECT_EQ(later, 0);
   }
-}
-
-TEST(Background, AFaultReachesWhoWaitsForAPlace) {
-  Background background(1);
-  std::string message;
-  for (int i = 0; i < 1000 && message.empty(); ++i)
-    message = error_of<std::runtime_error>([&] { background.add([] { throw std::runtime_error("gone"); }); });
-  EXPECT_EQ(message, "gone");
 }
 
 TEST(Background, WhatWaitsIsDoneBeforeItEnds) {

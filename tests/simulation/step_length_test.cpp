@@ -1,5 +1,4 @@
 #include "simulation/controls.hpp"
-
 #include "support/testing.hpp"
 
 namespace {

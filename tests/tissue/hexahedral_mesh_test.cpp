@@ -163,8 +163,8 @@ TEST(GroupedMesh, ComesBackTheSame) {
       const Tissue sheet = polygons(split, layers),
                    egg = build_egg({250, 120, 120, {}, {}}, 150, 1, {20, split, layers});
       for (const Tissue* tissue : {&sheet, &egg}) {
-        expect_same_tissue(
-            tissue_from_mesh(from_bytes<HexahedralMesh>(to_bytes(mesh_in_groups(*tissue))), {1, 1, 1}), *tissue);
+        expect_same_tissue(tissue_from_mesh(from_bytes<HexahedralMesh>(to_bytes(mesh_in_groups(*tissue))), {1, 1, 1}),
+                           *tissue);
       }
     }
   for (const std::array<int, 3>& elements : {std::array{2, 2, 1}, {1, 2, 3}}) {

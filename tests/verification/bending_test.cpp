@@ -285,13 +285,13 @@ TEST(CurvedBeam, IsReportedAndConverges) {
 // ---- The textbook's cantilever.
 
 TEST(Cantilever, DeflectsByPLCubedOverThreeEI) {
-  const double length = 400, side = 20, force = 0.01, young = 1;
+  const double long_um = 400, side = 20, force = 0.01;
   const int nx = 20;
   const Tissue tissue =
-      mapped_lattice(nx, 1, 1, [&](int i, int j, int k) { return Vec3(length * i / nx, side * j, side * k); });
-  const double exact = force * length * length * length / (3 * young * side * side * side * side / 12);
+      mapped_lattice(nx, 1, 1, [&](int i, int j, int k) { return Vec3(long_um * i / nx, side * j, side * k); });
+  const double exact = force * long_um * long_um * long_um / (3 * young * side * side * side * side / 12);
   // nu = 0: the clamp restrains no contraction, and shear adds 6/5 P L / (G A), 0.15 % of the deflection.
-  const double shear = 1.2 * force * length / (young / 2 * side * side);
+  const double shear = 1.2 * force * long_um / (young / 2 * side * side);
   for (const double poisson : {0.0, 0.3}) {
     const Vectors u = solve_clamped(tissue, nx, ElasticModuli::from_young(young, poisson),
                                     [&](std::size_t) { return Vec3(0, 0, force / 4); });

@@ -168,9 +168,9 @@ Pressures pressures(int cells, double apical_tension, double basal_tension) {
   }
   double of_cells = 0;
   for (const double pressure : state.pressures(model)) of_cells += pressure / static_cast<double>(tissue.cells.size());
-  const auto radius = [](double volume) { return std::cbrt(0.75 * volume / std::numbers::pi); };
-  const double outer = 2 * apical_tension / radius(*volume_inside_apices(tissue, state.positions)),
-               inner = 2 * basal_tension / radius(*lumen_volume(tissue, state.positions));
+  const auto radius_of = [](double volume) { return std::cbrt(0.75 * volume / std::numbers::pi); };
+  const double outer = 2 * apical_tension / radius_of(*volume_inside_apices(tissue, state.positions)),
+               inner = 2 * basal_tension / radius_of(*lumen_volume(tissue, state.positions));
   return {of_cells / outer, state.multipliers.back() / (outer + inner)};
 }
 
