@@ -133,7 +133,7 @@ std::optional<Series> series_of(const ReferenceRun& run) {
 Json compare_column(const Series& a, std::size_t in_a, double until_a_s, const Series& b, std::size_t in_b,
                     double until_b_s) {
   Json pair = pair_json(a.at(in_a, until_a_s), b.at(in_b, until_b_s));
-  pair["largest_difference"] = pair["largest_at_s"] = nullptr;
+  for (const char* key : {"largest_difference", "largest_at_s"}) pair[key] = nullptr;
   for (const auto& row : a.rows) {
     const double time_s = *row.front();
     if (time_s > std::min(until_a_s, until_b_s) + 1e-6) break;
