@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/names.hpp"
+
 namespace plica {
 namespace {
 
