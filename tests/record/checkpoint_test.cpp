@@ -120,7 +120,7 @@ TEST_F(CheckpointTest, DoesNotGrowWithTheRun) {
   const auto divided = std::ranges::find_if(
       checkpoints, [](const Checkpoint& checkpoint) { return !checkpoint.run.past_divisions.empty(); });
   const auto first = divided + 2, last = checkpoints.end() - 1;
-  ASSERT_GT(last - first, 3);
+  ASSERT_GE(last - first, 3);
   EXPECT_EQ(checkpoint_bytes(*last).size(),
             checkpoint_bytes(*first).size() + static_cast<std::size_t>(last - first) * sizeof(double));
 }

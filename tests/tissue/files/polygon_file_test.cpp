@@ -123,7 +123,7 @@ TEST(PolygonFile, SaysWhatIsWrongAndWhere) {
   ply("plx\n", "line 1: expected \"ply\"");
   ply("ply\nformat utf8 1.0\nend_header\n", "line 2: \"utf8\" is not a format; formats: ascii, binary_little_endian");
   ply("ply\nend_header\n", "the header has no format line");
-  ply(start, "line 3: the file ends within the header");
+  ply(start, "line 2: the file ends within the header");
   ply(start + "property float x\nend_header\n", "line 3: a property precedes the first element");
   ply(start + "element vertex many\nend_header\n", "line 3: \"many\" is not a number of elements");
   ply(start + "element vertex 1\nproperty half x\nend_header\n", "line 4: \"property half x\": unknown type");
