@@ -213,13 +213,14 @@ Diagnostic no_array(const Scenario& scenario, const std::string& key, const std:
 
 void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnostic>& errors) {
   const std::size_t cells = tissue.cells.size();
-  const auto [low, high] = extent_along(tissue);
+  const auto extent = extent_along(tissue);
   std::vector<int> from_midline;  // computed when a region needs it
   const std::function<const CellSet&(const std::string&)> resolve = [&](const std::string& name) -> const CellSet& {
     if (const auto known = tissue.regions.find(name); known != tissue.regions.end()) return known->second;
     const RegionInput& region = scenario.regions.at(name);
     CellSet set(cells, false);
-    for (std::size_t c = 0; c < cells; ++c) set[c] = selected(region, c, tissue.cells[c], tissue, low, high);
+    for (std::size_t c = 0; c < cells; ++c)
+      set[c] = selected(region, c, tissue.cells[c], tissue, extent.first, extent.second);
     const auto combine = [&](const CellSet& other, auto operation) {
       std::transform(set.begin(), set.end(), other.begin(), set.begin(), operation);
     };
