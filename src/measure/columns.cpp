@@ -16,7 +16,7 @@ namespace {
 
 using enum InSummary;
 
-// Places that programs know in series.csv. Columns that are not named here follow, set by set.
+// Fixed order in series.csv, for programs that read columns by number. Other columns follow, set by set.
 constexpr std::string_view order =
     "time_s furrow_depth_um furrow_depth_below_lips_um lip_distance_um vml_speed_um_per_s vce_speed_um_per_s "
     "speed_ratio vml_displacement_um vce_displacement_um vml_apical_area_ratio vce_apical_area_ratio "

@@ -266,18 +266,15 @@ int longest_axis(const Vectors& positions) {
   return axis;
 }
 
-bool pulls(const Scenario& scenario) {
-  const auto has_force = [](const auto& entry) {
-    const ContractionInput& input = entry.second;
-    return input.stiffness_nN_per_um > 0 || input.preload_nN > 0 || input.tension_mN_per_m > 0;
-  };
-  return std::ranges::any_of(scenario.contractions, has_force) ||
-         std::ranges::any_of(scenario.cortices, [](const auto& entry) { return entry.second.tension_mN_per_m > 0; });
+bool any_force_acts(const Scenario& scenario) {
+  return std::ranges::any_of(acting_tables(scenario), [](const Acting& table) {
+    return std::ranges::any_of(table.forces, [](const Acting::Force& force) { return force.value != 0; });
+  });
 }
 
 // Warns of tables without effect, and of times after the end of the run.
 void advise_on_effects(const Scenario& scenario, const Model& model, Messages& out) {
-  if (!pulls(scenario) && scenario.pressures.empty() && scenario.divisions.empty())
+  if (!any_force_acts(scenario) && scenario.divisions.empty())
     out.warn("no force acts, so the embryo does not move; add [contraction], [cortex], [pressure] or [division]");
   for (const auto& [name, contraction] : scenario.contractions)
     if (contraction.stiffness_nN_per_um == 0 && contraction.preload_nN == 0 && contraction.tension_mN_per_m == 0)
@@ -326,7 +323,7 @@ void advise_on_solver(const Scenario& scenario, const Model& model, Messages& ou
   advise_on_abrupt_loads(scenario, model.tissue, out);
   note_profile_axes(scenario, model.tissue, out);
   advise_on_shape_memory(scenario, model, out);
-  if (pulls(scenario) && model_of(scenario.elasticity) == ElasticModel::corotational &&
+  if (any_force_acts(scenario) && model_of(scenario.elasticity) == ElasticModel::corotational &&
       elements_through_height(model.tissue) == 1)
     out.note(
         "one element through the height bends too easily where cells bend far, so depth at given forces is uncertain "

@@ -66,7 +66,8 @@ class MaxwellSprings final : public Law {
   [[nodiscard]] std::vector<double> first_internal(const Tissue&) const override {
     std::vector<double> lengths;
     for (const Spring& spring : springs_) lengths.push_back(spring.rest_length);
-    lengths.insert(lengths.end(), lengths.begin(), lengths.begin() + static_cast<std::ptrdiff_t>(springs_.size()));
+    const std::vector<double> earlier = lengths;
+    lengths.insert(lengths.end(), earlier.begin(), earlier.end());
     return lengths;
   }
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override {

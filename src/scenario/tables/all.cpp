@@ -3,7 +3,8 @@
 
 namespace plica {
 
-// Each in the file of its name, or of the table it belongs to.
+// Each in the file of its name, but: [elasticity.NAME] in elasticity.cpp; [volume], [vitelline], [dynamics] in
+// surroundings.cpp; [stop], [stop.NAME], [expect] in monitor.cpp; [time], [measure], [furrow], [output] in run.cpp.
 ScenarioTable top_table(), embryo_table(), region_table(), elasticity_table(), region_elasticity_table(),
     volume_table(), vitelline_table(), dynamics_table(), contraction_table(), cortex_table(), enclosed_table(),
     self_contact_table(), hold_table(), pressure_table(), ablation_table(), division_table(), time_table(),

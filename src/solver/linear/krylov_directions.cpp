@@ -198,8 +198,8 @@ class KeptPreconditioner {
 
 constexpr double far_from_balance = 0.1;  // residual's forces, relative
 
-/// To which Newton's method can use a direction: its own error leaves a part of the residual that falls with the
-/// residual itself; more where it has been seen to converge slowly (Eisenstat and Walker 1996, choice 2).
+/// Relative tolerance of the linear solve: as the residual falls, the direction's error must fall with it; it may be
+/// larger where Newton's method converges slowly (Eisenstat and Walker 1996, choice 2).
 double useful_tolerance(const Residual& residual, const NewtonDirections::ForcingTermInput& forcing) {
   const double useful = std::clamp(
       std::max(0.05 * residual.force, 0.5 * forcing.residual_reduction * forcing.residual_reduction), 1e-4, 1e-2);
@@ -215,7 +215,7 @@ double accuracy_of_whole(double accuracy, const KrylovVector& right, std::size_t
   return share < 1e-3 ? accuracy * 1e3 * share : accuracy;
 }
 
-/// The share that reducing the residual to this has of a solve to 1e-4.
+/// Part of the iterations of a solve to 1e-4 that a solve to this residual takes, if each reduces it alike.
 double share_of_solve(double residual) { return std::clamp(std::log10(residual) / -4, 0.1, 4.0); }
 
 class KrylovDirections final : public NewtonDirections {

@@ -94,7 +94,7 @@ class Balance {
     std::vector<char> wanted(at.in_contact.begin(), at.in_contact.end());
     parallel_for(wanted.size(), [&](std::size_t k) {
       const Obstacle::Gap gap = contacts_.gap(k, at.positions);
-      // A node that is held where an obstacle would push it is the hold's business.
+      // A node that is held where an obstacle would push it needs no contact.
       if (without_held(model_, contacts_.node(k).index(), gap.inward).norm() < 1e-6) {
         at.in_contact[k] = wanted[k] = 0;
         at.contact_forces[k] = 0;
@@ -147,8 +147,7 @@ class Balance {
       for (int k = 0; k < touched.count; ++k) pushes.col(k) = touched.inward[k];
       const Eigen::VectorXd sizes =
           (normals.transpose() * pushes).partialPivLu().solve(-normals.transpose() * others[n]);
-      for (const std::size_t k : of_node)
-        at.contact_forces[k] = 0;  // of one that leaves nothing to do beside the others
+      for (const std::size_t k : of_node) at.contact_forces[k] = 0;  // redundant contacts bear none
       for (int k = 0; k < touched.count; ++k) at.contact_forces[touched.contact[k]] = sizes[k];
       forces[n] = pushes * sizes;
     });

@@ -1,4 +1,4 @@
-// Substitutes for frame_file_vtk.cpp, mesh_file_vtk.cpp and polygon_file_vtk.cpp when plica is built without VTK,
+// Substitutes for frame_file_vtk.cpp and mesh_file_vtk.cpp when plica is built without VTK,
 // and for vertex_model_hdf5.cpp when it is built without HDF5.
 #include <fmt/format.h>
 
