@@ -53,7 +53,7 @@ class Kills(Resuming):
         self.assertGreaterEqual(done, KILLS * 0.9)
 
     def rows_lost(self, process, rows):
-        """How many rows were cut back by a run that went on: the steps since the last resumable one whose checkpoint was written."""
+        """How many rows a resumed run cut back: the steps since the last resumable one whose checkpoint was written."""
         found = re.search(r"resuming after step (\d+)", process.stdout)
         if not found:
             return 0

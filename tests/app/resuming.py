@@ -32,7 +32,7 @@ class Resuming(CommandLine):
                 self.fail(f"{name} is not the same; kept in {shutil.copytree(out, self.folder.with_suffix('.kept'))}")
 
     def assert_alike(self, whole):
-        """A run that was extended, or went on after its stop: nothing is reused across that, so the last digits may differ."""
+        """A run that was extended, or resumed after its stop: nothing is reused across that, so the last digits may differ."""
         found, expected = self.summary(), whole["summary.json"]
         self.assertEqual(found["steps"], expected["steps"])
         for key in ("time_s", "max_displacement_um", "mean_height_um", "active_work_nN_um", "stored_energy_nN_um"):

@@ -144,7 +144,7 @@ def table(path):
 
 
 def rows_in(out):
-    """Whole rows of series.csv after the one at rest: steps that have been told of."""
+    """Whole rows of series.csv after the one at rest: steps that were reported."""
     series = Path(out) / "series.csv"
     return max(series.read_bytes().count(b"\n") - 2, 0) if series.exists() else 0
 

@@ -84,7 +84,7 @@ TEST(Parallel, WhatAnIterationThrowsComesOut) {
   }
 }
 
-/// A job that waits until the test lets it go on.
+/// A job that waits until the test releases it.
 class Gate {
  public:
   void open() { is_open_ = true, is_open_.notify_all(); }

@@ -244,7 +244,7 @@ TEST_F(ReadExperiments, TakesWhatTheFileSays) {
   EXPECT_EQ(end.margin, 0.5);
   EXPECT_EQ(rest.role, Role::seen);
   EXPECT_EQ(rest.question, "Does it come to rest?");
-  EXPECT_EQ(rest.observed, "");  // which is told of another question
+  EXPECT_EQ(rest.observed, "");  // which belongs to another question
   EXPECT_TRUE(rest.hit_if_none && !rest.has_band());
   EXPECT_EQ(experiments.overrides(1, 1),
             (std::vector<std::string>{"contraction.all.stiffness_nN_per_um=2", "time.end_s=5",

@@ -51,7 +51,7 @@ inline void expect_resumable_through_a_division(const Extension& extension,
     SCOPED_TRACE(testing::Message() << "from step " << k + 1 << " of " << steps.size());
     Simulation rest = fresh();
     go_on_by_bytes(rest, steps[k]);
-    while (rest.step()) (void)rest.memory();  // which makes it forget its factor, as the whole run
+    while (rest.step()) (void)rest.memory();  // drops its factor, as in the whole run
     EXPECT_EQ(rest.status(), whole.status());
     EXPECT_EQ(rest.steps(), whole.steps());
     expect_same(rest.state(), whole.state());
