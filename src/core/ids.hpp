@@ -17,6 +17,7 @@ class Id {
   [[nodiscard]] constexpr std::size_t index() const { return static_cast<std::size_t>(value_); }
   [[nodiscard]] constexpr int number() const { return value_; }
   [[nodiscard]] constexpr bool valid() const { return value_ >= 0; }
+  [[nodiscard]] constexpr bool is_among(std::size_t count) const { return valid() && index() < count; }
   constexpr auto operator<=>(const Id&) const = default;
 
  private:

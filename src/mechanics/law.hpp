@@ -9,10 +9,12 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "core/ids.hpp"
+#include "core/number_list.hpp"
 #include "core/vector.hpp"
 
 namespace plica {
@@ -65,6 +67,7 @@ struct EnergyFlow {
     active += more.active, stored += more.stored, dissipated += more.dissipated;
     return *this;
   }
+  static auto parts(auto& flow) { return std::tie(flow.active, flow.stored, flow.dissipated); }
 };
 
 /// Sink of 3 x 3 blocks of a symmetric tangent. `add_block(a, b, K)` adds K to the rows of a and columns of b and, for
@@ -163,6 +166,19 @@ class Law {
                                                                     const Tissue& /*tissue*/,
                                                                     const Division& /*division*/) const {
     return {internal.begin(), internal.end()};
+  }
+
+  /// Return what the law has of past tissues and positions: numbers that the law of the initial tissue, cells' origins
+  /// and the present tissue do not determine.
+  [[nodiscard]] virtual std::vector<double> past() const { return {}; }
+  /// Return the law with this past for a tissue that divisions made of its own; `change` has no new nodes. Called on
+  /// the law of the initial tissue, with reference positions. Throws InvalidNumbers for the past of another law or
+  /// tissue.
+  [[nodiscard]] virtual std::unique_ptr<Law> restored(const Tissue& tissue, const Division& change,
+                                                      std::span<const Vec3> positions,
+                                                      std::span<const double> past) const {
+    if (!past.empty()) throw InvalidNumbers();
+    return after_division(tissue, change, positions);
   }
 
   /// Return the law for the tissue after growth, in which these elements have other rest shapes, and cells other target

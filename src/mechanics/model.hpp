@@ -25,6 +25,11 @@ struct Growth {
 
   /// Return the completed fraction, 0 to 1.
   [[nodiscard]] double part(double time_s) const;
+
+  static auto parts(auto& growth) {
+    return std::tie(growth.cell, growth.rest_from, growth.rest_to, growth.target_from, growth.target_to, growth.start_s,
+                    growth.end_s);
+  }
 };
 
 /// Topology and parameters. Constant between divisions: while cells grow, each step has a model of its own

@@ -7,13 +7,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <concepts>
-#include <limits>
 #include <new>
 
 #include "core/child_process.hpp"
 #include "core/errors.hpp"
+#include "core/number_list.hpp"
 #include "record/archive.hpp"
 #include "scenario/print.hpp"
 
@@ -41,119 +39,12 @@ double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock:
   throw FileError(fmt::format("it is damaged: {} is invalid", name));
 }
 
-template <class Type, class Plain>
-concept Is = std::same_as<std::remove_const_t<Type>, Plain>;
-
-template <class Type>
-concept IsList = requires(std::remove_const_t<Type> list) {
-  list.resize(0), list.push_back(list.back());
-};
-
-// One description of the content for both directions: constant values are appended to a list of numbers, others are
-// taken from its front. Lists and maps begin with their length.
-class Numbers {
- public:
-  Numbers(const char* name, std::vector<double>& list) : name_(name), list_(list) {}
-
-  template <class... Values>
-  void pass(Values&... values) {
-    (pass_one(values), ...);
-  }
-  [[nodiscard]] bool all_taken() const { return at_ == list_.size(); }
-
- private:
-  template <class Number>
-  Number next() {
-    if (all_taken()) refuse(name_);
-    const double value = list_[at_++];
-    if constexpr (std::integral<Number>) {
-      constexpr double exact = 9007199254740992.0;  // largest range of exact integers in doubles
-      using Limits = std::numeric_limits<Number>;
-      if (value < std::max(-exact, static_cast<double>(Limits::lowest())) ||
-          value > std::min(exact, static_cast<double>(Limits::max())) || value != std::floor(value))
-        refuse(name_);
-    }
-    return static_cast<Number>(value);
-  }
-
-  template <class Number>
-  requires std::is_arithmetic_v<Number>
-  void pass_one(Number& number) {
-    if constexpr (std::is_const_v<Number>)
-      list_.push_back(static_cast<double>(number));
-    else
-      number = next<Number>();
-  }
-  template <Is<CellId> Cell>
-  void pass_one(Cell& cell) {
-    if constexpr (std::is_const_v<Cell>)
-      list_.push_back(cell.number());
-    else
-      cell = CellId(next<int>());
-  }
-  template <Is<std::optional<double>> Optional>
-  void pass_one(Optional& value) {
-    if constexpr (std::is_const_v<Optional>) {
-      list_.insert(list_.end(), {value ? 1.0 : 0.0, value.value_or(0)});
-    } else {
-      const bool is_there = next<bool>();
-      const double number = next<double>();
-      value = is_there ? std::optional(number) : std::nullopt;
-    }
-  }
-  template <IsList List>
-  void pass_one(List& list) {
-    if constexpr (std::is_const_v<List>) {
-      list_.push_back(static_cast<double>(list.size()));
-    } else {
-      const auto size = next<std::size_t>();
-      if (size > list_.size() - at_) refuse(name_);
-      list.resize(size);
-    }
-    for (auto& item : list) pass_one(item);
-  }
-  template <class Map>
-  requires requires { typename Map::mapped_type; }
-  void pass_one(Map& map) {
-    if constexpr (std::is_const_v<Map>) {
-      list_.push_back(static_cast<double>(map.size()));
-      for (const auto& [name, value] : map) pass(name, value);
-    } else {
-      for (auto left = next<std::size_t>(); left > 0; --left) {
-        std::string name;
-        pass_one(name);
-        pass_one(map[name]);
-      }
-    }
-  }
-
-  template <Is<Vec3> Vector>
-  void pass_one(Vector& vector) {
-    for (auto& number : vector) pass_one(number);
-  }
-  template <Is<EnergyFlow> Flow>
-  void pass_one(Flow& flow) {
-    pass(flow.active, flow.stored, flow.dissipated);
-  }
-  template <Is<PlannedDivision> Planned>
-  void pass_one(Planned& one) {
-    pass(one.cut.cell, one.cut.first_wall, one.cut.second_wall, one.growth_s, one.volume_ratio);
-  }
-  template <Is<std::shared_ptr<const PastDivision>> Past>
-  void pass_one(Past& past) {
-    if constexpr (std::is_const_v<Past>) {
-      pass(past->time_s, past->positions, past->planned);
-    } else {
-      PastDivision one;
-      pass(one.time_s, one.positions, one.planned);
-      past = std::make_shared<const PastDivision>(std::move(one));
-    }
-  }
-
-  const char* name_;
-  std::vector<double>& list_;
-  std::size_t at_ = 0;
-};
+template <class... Values>
+void take(const char* name, std::vector<double>& numbers, Values&... values) try {
+  take_numbers(std::move(numbers), values...);
+} catch (const InvalidNumbers&) {
+  refuse(name);
+}
 
 // Write a constant checkpoint to an archive, or read another from it.
 template <class AnyCheckpoint>
@@ -166,9 +57,10 @@ void pass(AnyCheckpoint& checkpoint, Archive& archive) {
       value = archive.texts[name];
   };
   const auto numbers = [&](const char* name, auto&... values) {
-    Numbers list(name, archive.numbers[name]);
-    list.pass(values...);
-    if (!writes && !list.all_taken()) refuse(name);
+    if constexpr (writes)
+      archive.numbers[name] = as_numbers(values...);
+    else
+      take(name, archive.numbers[name], values...);
   };
   auto& [program, scenario, at_rest, run, record] = checkpoint;
   text("program", program), text("scenario", scenario), text("at_rest", at_rest);
@@ -187,7 +79,7 @@ void pass(AnyCheckpoint& checkpoint, Archive& archive) {
   numbers("run", run.steps, run.divisions, run.equilibrium_time_s, run.at_equilibrium, run.wanted_step_s,
           run.pace.since_s, run.pace.steps, run.pace.iterations, run.computing_s, run.energies, run.whole_internals,
           run.outside_arrays);
-  numbers("divisions", run.past_divisions);
+  numbers("changes", run.changes, run.growth_ends_s);
   numbers("record", record.table_bytes, record.frame_times_s, record.wall_s, record.solver_s);
 }
 
@@ -255,7 +147,7 @@ Checkpoint read_checkpoint_bytes(std::string_view bytes) {
   const std::string_view image = bytes.substr(0, bytes.size() - trailer_bytes), end = bytes.substr(image.size());
   constexpr std::string_view start = "\nplica checkpoint ";
   if (!end.starts_with(start)) throw FileError("it is not a checkpoint, or truncated");
-  if (end.substr(start.size(), 2) != fmt::format("{} ", checkpoint_format))
+  if (!end.substr(start.size()).starts_with(fmt::format("{} ", checkpoint_format)))
     throw FileError(
         fmt::format("it was written by another version of plica in a format other than {}", checkpoint_format));
   if (end != trailer(image)) throw FileError("it is damaged: its checksum does not match its content");

@@ -29,17 +29,4 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
   return std::nullopt;
 }
 
-std::optional<std::string> why_unfit(const PastDivision& past, const Model& model) {
-  if (past.positions.size() != model.tissue.node_count()) return "a division does not fit this embryo";
-  for (const PlannedDivision& one : past.planned) {
-    const int cell = one.cut.cell.number();
-    if (cell < 0 || static_cast<std::size_t>(cell) >= model.tissue.cells.size() || one.cut.first_wall < 0 ||
-        one.cut.second_wall <= one.cut.first_wall ||
-        static_cast<std::size_t>(one.cut.second_wall) >= model.tissue.cells[cell].walls.size() ||
-        !(one.growth_s >= 0) || !(one.volume_ratio > 0))
-      return "a division does not fit this embryo";
-  }
-  return std::nullopt;
-}
-
 }  // namespace plica

@@ -9,18 +9,11 @@
 #include <vector>
 
 #include "measure/observation.hpp"
-#include "mechanics/division.hpp"
 #include "mechanics/model.hpp"
+#include "mechanics/model_memory.hpp"
 #include "simulation/controls.hpp"
 
 namespace plica {
-
-/// Past division with the data that the model's part of it depended on.
-struct PastDivision {
-  double time_s = 0;
-  Vectors positions;  // nodes, before it; um
-  std::vector<PlannedDivision> planned;
-};
 
 /// State of a run between two steps. With the model of the scenario it determines the rest of the run bitwise.
 struct RunMemory {
@@ -34,7 +27,8 @@ struct RunMemory {
   Pace pace;                                 // until it is known, then from there on
   double computing_s = 0;                    // wall time of its steps
   std::vector<EnergyFlow> energies;  // sums over all steps, in the order of energy_flows; empty before the first
-  std::vector<std::shared_ptr<const PastDivision>> past_divisions;
+  std::shared_ptr<const ModelMemory> changes;        // what divisions made of the model; null before the first
+  std::vector<double> growth_ends_s;                 // of daughters, after the last division; steps end on them
   std::vector<std::vector<double>> whole_internals;  // with mirror planes: internal variables of the full model
   std::map<std::string, CellArray> outside_arrays;   // cells (all, with mirror planes): set from outside for output
 };
@@ -47,10 +41,8 @@ struct UnfitMemory : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Check the memory against the model after its past divisions: sizes, numbers of nodes and cells. Returns the problem,
-/// or empty.
+/// Check the memory against the model with its changes: sizes, numbers of nodes and cells. Returns the problem, or
+/// empty.
 std::optional<std::string> why_unfit(const RunMemory& run, const Model& model);
-/// Check a past division that is to be repeated.
-std::optional<std::string> why_unfit(const PastDivision& past, const Model& model);
 
 }  // namespace plica

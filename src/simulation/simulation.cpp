@@ -72,6 +72,14 @@ std::string failure_text(StepReport report, const Model& model, const State& sta
   return with_remedies(text, report.status, state, scenario);
 }
 
+// Model that divisions made of the initial one; null if there were none.
+std::unique_ptr<Model> changed_model(const Model& initial, const RunMemory& memory) try {
+  if (!memory.changes) return nullptr;
+  return std::make_unique<Model>(restored(initial, *memory.changes, memory.state.positions.size()));
+} catch (const std::logic_error&) {
+  throw UnfitMemory("its cells do not fit this embryo");
+}
+
 }  // namespace
 
 Simulation::Parts parts_of(const Scenario& scenario) {
@@ -187,20 +195,22 @@ void Simulation::set_cell_array(const std::string& name, CellArray values) {
 }
 
 void Simulation::go_on_from(RunMemory memory) {
-  for (const auto& past : memory.past_divisions) {
-    if (const auto why = why_unfit(*past, *model_)) throw UnfitMemory(*why);
-    State then = rest_state(*model_);
-    then.time_s = past->time_s;
-    then.positions = past->positions;
-    (void)make_division(then, past->planned);
-  }
-  if (const auto why = why_unfit(memory, *model_)) throw UnfitMemory(*why);
-  if (memory.whole_internals.size() != (full_model_ ? full_model_->model().laws.size() : 0))
+  if (full_model_ ? memory.changes || memory.whole_internals.size() != full_model_->model().laws.size()
+                  : !memory.whole_internals.empty())
     throw UnfitMemory("its mirror planes do not fit this embryo");
+  const std::unique_ptr<Model> changed = changed_model(*model_, memory);
+  const Model& present = changed ? *changed : *model_;
+  if (const auto why = why_unfit(memory, present)) throw UnfitMemory(*why);
   if (memory.measures.monitors.size() != observer_.monitors().size())
     throw UnfitMemory("its output variables do not fit the monitors");
+  const std::size_t cells = (full_model_ ? full_model_->model() : present).tissue.cells.size();
   for (const auto& [name, values] : memory.outside_arrays)
-    if (values.size() != model().tissue.cells.size()) throw UnfitMemory("its cell arrays do not fit this embryo");
+    if (values.size() != cells) throw UnfitMemory("its cell arrays do not fit this embryo");
+  if (changed) {
+    observer_.follow_division(changed->tissue, change_of(*memory.changes, model_->tissue));
+    *model_ = std::move(*changed);
+  }
+  std::ranges::copy(memory.growth_ends_s, std::back_inserter(controls_.program_points_s));
   now_ = std::move(memory);
   if (full_model_) full_model_->go_to(*model_, now_.state, std::move(now_.whole_internals));
   step_length_ = StepLength(controls_, now_.wanted_step_s);
@@ -209,22 +219,19 @@ void Simulation::go_on_from(RunMemory memory) {
 }
 
 // Divide cells and update everything indexed by cells and nodes.
-Division Simulation::make_division(State& state, const std::vector<PlannedDivision>& planned) {
-  Division division = divide_cells(*model_, state, planned);
-  grown_.reset();
-  for (const PlannedDivision& one : planned) controls_.program_points_s.push_back(state.time_s + one.growth_s);
-  observer_.follow_division(model_->tissue, division);
-  return division;
-}
-
 void Simulation::divide(const std::vector<PlannedDivision>& due) {
-  now_.state.divided_until_s = now_.state.time_s;
+  const double now_s = now_.state.divided_until_s = now_.state.time_s;
   if (due.empty()) return;
-  now_.past_divisions.push_back(
-      std::make_shared<const PastDivision>(PastDivision{now_.state.time_s, now_.state.positions, due}));
   now_.divisions += static_cast<int>(due.size());
   now_.equilibrium_time_s.reset();  // it counts only after the last division
-  const Division division = make_division(now_.state, due);
+  const Division division = divide_cells(*model_, now_.state, due);
+  grown_.reset();
+  now_.changes = std::make_shared<const ModelMemory>(
+      memory_of(*model_, now_.changes ? inherited(division, now_.changes->origin) : division.origin));
+  std::erase_if(now_.growth_ends_s, [&](double end_s) { return has_come(end_s, now_s); });
+  for (const PlannedDivision& one : due)
+    for (auto* times_s : {&now_.growth_ends_s, &controls_.program_points_s}) times_s->push_back(now_s + one.growth_s);
+  observer_.follow_division(model_->tissue, division);
   for (auto& [name, values] : now_.outside_arrays) values = inherited(division, values);
   renew_stepper();
   step_length_ = StepLength(controls_);

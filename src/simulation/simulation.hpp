@@ -131,7 +131,6 @@ class Simulation {
   bool has_stalled();
   std::optional<StepReport> take_step(double until_s, State& before);
   void divide(const std::vector<PlannedDivision>& due);
-  Division make_division(State& state, const std::vector<PlannedDivision>& planned);
   void restart_at_a_jump();
   EnergyFlow account_for_energy(const State& before);
   void renew_stepper();

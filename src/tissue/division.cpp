@@ -1,6 +1,7 @@
 #include "tissue/division.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <tuple>
 
@@ -412,10 +413,48 @@ Division divide(Tissue& tissue, std::span<const CellCut> cuts, double time_s, st
   Cutter cutter(tissue, Vectors(places.begin(), places.begin() + division.free_nodes_before), division);
   for (std::size_t i = 0; i < cuts.size(); ++i) cutter.cut(cuts[i], lines[i], time_s);
   cutter.split_daughters();
+  complete(tissue, division);
+  return division;
+}
+
+void complete(Tissue& tissue, const Division& division) {
   Mesher(tissue).mesh();
   for (auto& [name, cells] : tissue.regions) cells = inherited(division, cells);
   for (auto& [name, values] : tissue.cell_arrays) values = inherited(division, values);
-  return division;
+}
+
+bool is_consistent(const Cell& cell, std::size_t free_nodes) {
+  const std::size_t walls = cell.walls.size();
+  std::size_t stops = 0;
+  for (std::size_t wall = 0; wall < walls; ++wall) {
+    const auto &chain = cell.walls[wall], &next = cell.walls[(wall + 1) % walls];
+    const auto is_known = [&](const WallStop& stop) {
+      return stop.basal.is_among(free_nodes) && stop.apical.is_among(free_nodes);
+    };
+    if (chain.size() < 2 || next.empty() || !std::ranges::all_of(chain, is_known) || chain.front().at != 0 ||
+        chain.back().at != 1 ||
+        std::ranges::adjacent_find(chain, std::ranges::greater_equal{}, &WallStop::at) != chain.end() ||
+        chain.back().basal != next.front().basal || chain.back().apical != next.front().apical)
+      return false;
+    stops += chain.size() - 1;
+  }
+  const auto is_on_outline = [&](const OutlinePlace& place) {
+    return place.is_middle() || (static_cast<std::size_t>(place.wall) < walls && place.at >= 0 && place.at <= 1);
+  };
+  for (const OutlineQuad& quadrilateral : cell.quadrilaterals)
+    if (!std::ranges::all_of(quadrilateral, is_on_outline)) return false;
+  const bool is_split = !cell.quadrilaterals.empty() && cell.quadrilaterals.size() <= stops;
+  return walls >= 3 && is_split && (!cell.is_of_grid || (walls == 4 && is_one_patch(cell))) &&
+         cell.rest_shape.size() == 2 * walls;
+}
+
+std::size_t element_count(const Cell& cell) {
+  std::size_t count = 0;
+  for (const OutlineQuad& quadrilateral : cell.quadrilaterals) {
+    const Patch patch(cell, quadrilateral);
+    count += (patch.lines(0).size() - 1) * (patch.lines(1).size() - 1);
+  }
+  return count;
 }
 
 Vectors with_new_nodes(const Tissue& tissue, const Division& division, const Vectors& before) {

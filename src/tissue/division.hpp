@@ -47,6 +47,16 @@ std::optional<std::string> why_indivisible(const Tissue& tissue);
 /// the reference state and with nodes at `positions` (default: reference). The tissue must be divisible.
 Division divide(Tissue& tissue, std::span<const CellCut> cuts, double time_s, std::span<const Vec3> positions = {});
 
+/// Completes a tissue whose cells have changed as `division` says (origins): the mesh follows from walls,
+/// quadrilaterals and rest shapes of the cells and from the free nodes, regions and arrays from those before.
+void complete(Tissue& tissue, const Division& division);
+
+/// Whether walls, quadrilaterals and rest shape of a cell are consistent, with these free nodes.
+bool is_consistent(const Cell& cell, std::size_t free_nodes);
+
+/// Returns the number of elements of a consistent cell in its mesh.
+std::size_t element_count(const Cell& cell);
+
 /// Returns both parts of a prism, given by its basal and then apical corners, after such a cut.
 std::pair<std::vector<Vec3>, std::vector<Vec3>> halves_of_prism(const CellCut& cut, const std::vector<Vec3>& corners);
 

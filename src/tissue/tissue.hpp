@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -62,6 +63,7 @@ struct WallStop {
   NodeId basal, apical;
 
   bool operator==(const WallStop&) const = default;
+  static auto parts(auto& stop) { return std::tie(stop.at, stop.basal, stop.apical); }
 };
 
 /// Place on the outline of the polygon of a cell: on a lateral face, from its first corner (0) to the next (1); or the
@@ -72,6 +74,7 @@ struct OutlinePlace {
 
   [[nodiscard]] bool is_middle() const { return wall < 0; }
   bool operator==(const OutlinePlace&) const = default;
+  static auto parts(auto& place) { return std::tie(place.wall, place.at); }
 };
 
 /// Quadrilateral of a split polygon: its corners, counter-clockwise seen from outside.
@@ -83,6 +86,8 @@ struct Lineage {
   int mother = -1;  // -1: initial cell
   int generation = 0;
   double birth_s = 0;
+
+  static auto parts(auto& lineage) { return std::tie(lineage.id, lineage.mother, lineage.generation, lineage.birth_s); }
 };
 
 struct Cell {
@@ -106,6 +111,11 @@ struct Cell {
   [[nodiscard]] std::size_t sides() const { return corners.size() / 2; }
   [[nodiscard]] std::span<const NodeId> basal_corners() const { return std::span(corners).first(sides()); }
   [[nodiscard]] std::span<const NodeId> apical_corners() const { return std::span(corners).last(sides()); }
+
+  /// What divisions change and the mesh follows from (division.hpp).
+  static auto parts(auto& cell) {
+    return std::tie(cell.walls, cell.quadrilaterals, cell.rest_shape, cell.target_volume, cell.lineage);
+  }
 };
 
 /// Cell set: one flag per cell.

@@ -312,4 +312,16 @@ std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const Div
   return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_division(division));
 }
 
+std::unique_ptr<Law> Contraction::restored(const Tissue& tissue, const Division& change, std::span<const Vec3>,
+                                           std::span<const double> past) const {
+  std::vector<Spring> springs;
+  take_numbers({past.begin(), past.end()}, springs);
+  const auto is_node = [&](NodeId node) { return node.is_among(tissue.node_count()); };
+  for (const Spring& spring : springs)
+    if (spring.nodes.size() < 2 || !std::ranges::all_of(spring.nodes, is_node) ||
+        !spring.cell.is_among(tissue.cells.size()))
+      throw InvalidNumbers();
+  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_division(change));
+}
+
 }  // namespace plica

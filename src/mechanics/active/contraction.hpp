@@ -19,6 +19,11 @@ struct Spring {
   double rest_length = 0;  // U, um
   double delay_s = 0;      // delay of its program
   CellId cell = {};        // owner
+
+  static auto parts(auto& spring) {
+    return std::tie(spring.nodes, spring.stiffness, spring.preload, spring.damping, spring.rest_length, spring.delay_s,
+                    spring.cell);
+  }
 };
 
 /// Parameters of the springs. Lengths and stiffness as in [contraction.NAME] of the scenario.
@@ -60,6 +65,10 @@ class Contraction final : public Law {
   /// none. Diagonals stay whole.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
+  /// Springs depend on positions at each division.
+  [[nodiscard]] std::vector<double> past() const override { return as_numbers(springs_); }
+  [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const Division& change, std::span<const Vec3>,
+                                              std::span<const double> past) const override;
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& /*tissue*/,
                                                             const Division& division) const override {
     return GivenActivities(internal).after_division(division);

@@ -296,15 +296,21 @@ class Cortex::Origins {
 
 void Cortex::inherit_faces(const Origins& origins, const Cortex& before, std::span<const Vec3> positions) {
   const std::vector<double> now = areas(positions);
+  std::vector<double> stretches;
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const std::vector<std::size_t> from = origins.of(faces_[f]);
-    stretches_[f] = from.empty() ? now[f] / rest_areas_[f] : origins.mean(from, before.stretches_);
-    rest_areas_[f] *= stretches_[f];
+    stretches.push_back(from.empty() ? now[f] / rest_areas_[f] : origins.mean(from, before.stretches_));
     // In a part of a tissue, the neighbour that is left out keeps its half of a wall.
     if (from.empty() || faces_[f].beyond || !before.faces_[from.front()].beyond) continue;
     faces_[f].share *= 0.5;
     strengths_[f] *= 0.5;
   }
+  take_stretches(std::move(stretches));
+}
+
+void Cortex::take_stretches(std::vector<double> stretches) {
+  stretches_ = std::move(stretches);
+  for (std::size_t f = 0; f < faces_.size(); ++f) rest_areas_[f] *= stretches_[f];
   take_rest_areas();
 }
 
@@ -313,6 +319,14 @@ std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const Division
   auto after = std::make_unique<Cortex>(tissue, pattern_.after_division(division), rule_, kernels_);
   after->inherit_faces(Origins(*this, division), *this, positions);
   return after;
+}
+
+std::unique_ptr<Law> Cortex::restored(const Tissue& tissue, const Division& change, std::span<const Vec3>,
+                                      std::span<const double> past) const {
+  auto law = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_, kernels_);
+  if (past.size() != law->faces_.size()) throw InvalidNumbers();
+  law->take_stretches({past.begin(), past.end()});
+  return law;
 }
 
 std::vector<double> Cortex::internal_after_division(std::span<const double> internal, const Tissue& tissue,

@@ -50,6 +50,10 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   /// area), also as parts of a face that was cut. The reference area of a face between daughters is its present one.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
+  /// Reference areas of faces born in divisions depend on positions then.
+  [[nodiscard]] std::vector<double> past() const override { return stretches_; }
+  [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const Division& change, std::span<const Vec3>,
+                                              std::span<const double> past) const override;
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                             const Division& division) const override;
 
@@ -90,6 +94,7 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   [[nodiscard]] double rest_area_before(std::size_t face, const Step& step) const;
   class Origins;  // faces before a division that faces after it come from
   void take_rest_areas();
+  void take_stretches(std::vector<double> stretches);
   void inherit_faces(const Origins& origins, const Cortex& before, std::span<const Vec3> positions);
   // An internal state, in its order. Parts that are not used are empty.
   struct Memory {

@@ -1,0 +1,41 @@
+// What divisions made of a model, for checkpoints: the part of it that does not follow from the model of the scenario.
+// Meshes, the sets of laws and most of their data are made again from this.
+#pragma once
+
+#include <array>
+#include <tuple>
+#include <vector>
+
+#include "mechanics/model.hpp"
+#include "tissue/division.hpp"
+
+namespace plica {
+
+/// Data of a model whose cells have divided.
+struct ModelMemory {
+  std::vector<CellId> origin;             // cells; the cell of the initial tissue that each descends from
+  Vectors rest_positions;                 // free nodes; um
+  std::vector<Cell> cells;                // only Cell::parts
+  int next_cell_id = 0;                   // of the tissue
+  std::vector<std::array<bool, 3>> held;  // nodes
+  std::vector<Growth> growths;
+  std::vector<std::vector<double>> laws;  // Law::past
+
+  static auto parts(auto& memory) {
+    return std::tie(memory.origin, memory.rest_positions, memory.cells, memory.next_cell_id, memory.held,
+                    memory.growths, memory.laws);
+  }
+};
+
+/// Return the data of a model, as it is after its last division.
+ModelMemory memory_of(const Model& model, std::vector<CellId> origin);
+
+/// Return all divisions of the initial tissue as one, without its nodes, for data by cell. Throws InvalidNumbers unless
+/// the cells descend from such a tissue.
+Division change_of(const ModelMemory& memory, const Tissue& initial);
+
+/// Return the model with this memory; `nodes`: expected number of nodes of its tissue. Throws std::domain_error unless
+/// they fit the initial model.
+Model restored(const Model& initial, const ModelMemory& memory, std::size_t nodes);
+
+}  // namespace plica
