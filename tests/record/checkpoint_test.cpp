@@ -64,6 +64,16 @@ const BlockRun& block_run() {
   return run;
 }
 
+// Whether the block at rest becomes such a model.
+bool is_restored(const ModelMemory& changes) {
+  try {
+    (void)restored(*block_run().at_rest, changes, block_run().model->tissue.node_count());
+    return true;
+  } catch (const std::logic_error&) {
+    return false;
+  }
+}
+
 std::optional<Checkpoint> unless_refused(std::string_view bytes) {
   try {
     return read_checkpoint_bytes(bytes);
@@ -85,7 +95,7 @@ std::string made_right(std::string bytes) {
 
 TEST_F(CheckpointTest, ComesBackAsItWas) {
   const Checkpoint before = block_run().last();
-  ASSERT_FALSE(before.run.past_divisions.empty());
+  ASSERT_TRUE(before.run.changes);
   const std::string bytes = checkpoint_bytes(before);
   const Checkpoint after = read_checkpoint_bytes(bytes);
   EXPECT_EQ(after.scenario, before.scenario);
@@ -96,7 +106,7 @@ TEST_F(CheckpointTest, ComesBackAsItWas) {
   EXPECT_EQ(after.run.state.trend.earlier_s, before.run.state.trend.earlier_s);
   EXPECT_EQ(after.run.measures.values, before.run.measures.values);
   EXPECT_EQ(after.run.measures.monitors, before.run.measures.monitors);
-  EXPECT_EQ(after.run.past_divisions.front()->positions, before.run.past_divisions.front()->positions);
+  EXPECT_EQ(after.run.changes->rest_positions, before.run.changes->rest_positions);
   EXPECT_EQ(checkpoint_bytes(after), bytes) << "all that is in it comes back, and gives the same bytes";
   EXPECT_EQ(checkpoint_bytes(before), bytes);
   EXPECT_EQ(made_right(bytes), bytes) << "this test's own checksum";
@@ -111,14 +121,14 @@ TEST_F(CheckpointTest, EveryMemberComesBack) {
     EXPECT_NE(numbers, unmarked.at(field)) << field << " has no value of its own here";
     EXPECT_EQ(numbers, read.at(field)) << field;
   }
-  EXPECT_GT(written.size(), 35U);
+  EXPECT_GT(written.size(), 45U);
 }
 
 // A state, not a history: the steps before it add a time of a snapshot each, nothing else.
 TEST_F(CheckpointTest, DoesNotGrowWithTheRun) {
   const auto& checkpoints = block_run().checkpoints;
-  const auto divided = std::ranges::find_if(
-      checkpoints, [](const Checkpoint& checkpoint) { return !checkpoint.run.past_divisions.empty(); });
+  const auto divided =
+      std::ranges::find_if(checkpoints, [](const Checkpoint& checkpoint) { return checkpoint.run.changes != nullptr; });
   const auto first = divided + 2, last = checkpoints.end() - 1;
   ASSERT_GE(last - first, 3);
   EXPECT_EQ(checkpoint_bytes(*last).size(),
@@ -167,7 +177,7 @@ TEST_F(CheckpointTest, IsReadOnTrialFirst) {
 // whether it fits the embryo can be told.
 TEST_F(CheckpointTest, DamageUnderARightChecksumIsRefusedOrHarmless) {
   const std::string whole = checkpoint_bytes(block_run().last());
-  int refused = 0, read = 0;
+  int refused = 0, read = 0, restored = 0;
   for (std::size_t at = 0; at < whole.size() - trailer_bytes; at += at < 2048 ? 3 : 251) {
     for (const int flip : {0x01, 0x80, 0xff}) {
       std::string bytes = whole;
@@ -179,19 +189,21 @@ TEST_F(CheckpointTest, DamageUnderARightChecksumIsRefusedOrHarmless) {
         EXPECT_TRUE(std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); })) << field << at;
       EXPECT_TRUE(fits_columns(checkpoint->run.measures));
       (void)why_unfit(checkpoint->run, *block_run().model);
+      if (checkpoint->run.changes) restored += is_restored(*checkpoint->run.changes);
     }
   }
-  std::cout << refused << " refused, " << read << " read\n";
+  std::cout << refused << " refused, " << read << " read, " << restored << " of them restored\n";
   EXPECT_GT(refused, 100);
   EXPECT_GT(read, 100);
+  EXPECT_GT(restored, 20);
 }
 
 TEST_F(CheckpointTest, AnotherFormatIsNamed) {
   std::string bytes = checkpoint_bytes(block_run().last());
   const std::string mark = fmt::format("\nplica checkpoint {} ", checkpoint_format);
-  for (const char* format : {"1 ", "20", "0 "}) {
+  for (const char* format : {"9  ", "1  ", "11 ", "101", "0  "}) {
     std::string other = bytes;
-    other.replace(bytes.size() - trailer_bytes + mark.size() - 2, 2, format);
+    other.replace(bytes.size() - trailer_bytes + mark.size() - 3, 3, format);
     EXPECT_SAYS(error_of<FileError>([&] { return read_checkpoint_bytes(other); }), "format");
   }
 }
@@ -253,7 +265,6 @@ TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
   const BlockRun& run = block_run();
   EXPECT_FALSE(why_unfit(run.last().run, *run.model));
   EXPECT_TRUE(why_unfit(run.last().run, *run.at_rest)) << "its cells have not divided";
-  EXPECT_FALSE(why_unfit(*run.last().run.past_divisions.front(), *run.at_rest));
   int cases = 0;
   const auto unfit = [&](const auto& harm) {
     Checkpoint bad = run.last();
@@ -277,18 +288,48 @@ TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
   unfit([](RunMemory& m) { m.pace.since_s = m.state.time_s + 1; });
   unfit([](RunMemory& m) { m.pace.steps = -1; });
   EXPECT_EQ(cases, 15);
-  for (const int part : {0, 1, 2, 3, 4, 5, 6}) {
-    PastDivision bad = *run.last().run.past_divisions.front();
-    PlannedDivision& one = bad.planned.front();
-    if (part == 0) bad.positions.pop_back();
-    if (part == 1) one.cut.cell = CellId(1000000);
-    if (part == 2) one.cut.cell = CellId(-1);
-    if (part == 3) one.cut.first_wall = 2;
-    if (part == 6) one.cut.second_wall = 4;
-    if (part == 4) one.growth_s = -1;
-    if (part == 5) one.volume_ratio = 0;
-    EXPECT_TRUE(why_unfit(bad, *run.at_rest)) << part;
-  }
+}
+
+// Sizes and indices, each of which the model would be made with.
+TEST_F(CheckpointTest, ChangesThatDoNotFitTheEmbryoAreRefused) {
+  const ModelMemory& good = *block_run().last().run.changes;
+  ASSERT_TRUE(is_restored(good));
+  int cases = 0;
+  const auto refused = [&](const auto& harm) {
+    ModelMemory bad = good;
+    harm(bad);
+    EXPECT_FALSE(is_restored(bad)) << "case " << cases;
+    ++cases;
+  };
+  refused([](ModelMemory& m) { m.origin.pop_back(); });
+  refused([](ModelMemory& m) { m.origin.back() = CellId(1000000); });
+  refused([](ModelMemory& m) { m.origin.back() = CellId(); });
+  refused([](ModelMemory& m) { m.origin.front() = CellId(1); });
+  refused([](ModelMemory& m) { m.cells.pop_back(); });
+  refused([](ModelMemory& m) { m.origin.clear(), m.cells.clear(); });
+  refused([](ModelMemory& m) { m.rest_positions.clear(); });
+  refused([](ModelMemory& m) { m.rest_positions.push_back(Vec3::Zero()); });
+  refused([](ModelMemory& m) { m.held.pop_back(); });
+  refused([](ModelMemory& m) { m.laws.pop_back(); });
+  refused([](ModelMemory& m) { m.laws.back().push_back(1); });
+  refused([](ModelMemory& m) { m.growths.push_back({.cell = CellId(1000000), .rest_from = {}, .rest_to = {}}); });
+  refused([](ModelMemory& m) { m.growths.push_back({.cell = CellId(0), .rest_from = {}, .rest_to = {}}); });
+  const auto refused_cell = [&](const auto& harm) { refused([&](ModelMemory& m) { harm(m.cells.front()); }); };
+  refused_cell([](Cell& cell) { cell.walls.clear(); });
+  refused_cell([](Cell& cell) { cell.walls.pop_back(); });
+  refused_cell([](Cell& cell) { cell.walls[1].clear(); });
+  refused_cell([](Cell& cell) { cell.walls[1].pop_back(); });
+  refused_cell([](Cell& cell) { cell.walls[1].back().at = 0.75; });
+  refused_cell([](Cell& cell) { cell.walls[1].insert(cell.walls[1].begin(), cell.walls[1].front()); });
+  refused_cell([](Cell& cell) { cell.walls[1].front().basal = NodeId(1000000); });
+  refused_cell([](Cell& cell) { cell.walls[1].front().apical = NodeId(); });
+  refused_cell([](Cell& cell) { std::swap(cell.walls[0], cell.walls[1]); });
+  refused_cell([](Cell& cell) { cell.quadrilaterals.clear(); });
+  refused_cell([](Cell& cell) { cell.quadrilaterals.resize(1000, cell.quadrilaterals.front()); });
+  refused_cell([](Cell& cell) { cell.quadrilaterals.front()[2].wall = 4; });
+  refused_cell([](Cell& cell) { cell.quadrilaterals.front()[2].at = -0.5; });
+  refused_cell([](Cell& cell) { cell.rest_shape.pop_back(); });
+  EXPECT_EQ(cases, 27);
 }
 
 TEST_F(CheckpointTest, ScenariosThatMayChange) {

@@ -4,6 +4,7 @@
 #include "support/loads.hpp"
 #include "support/resumed.hpp"
 #include "support/roofs.hpp"
+#include "support/scenarios.hpp"
 
 namespace {
 
@@ -175,6 +176,53 @@ TEST(Resume, AcrossDivisions) {
                    {"division.floor.at_min=0.2", "division.floor.growth_min=0.3", "division.borders.at_min=0.7",
                     "division.borders.growth_min=0.3", "time.end_min=1.5", second_order},
                    11);
+}
+
+// Cells divide again while they grow; faces, springs, strengths, holds and flowing cortices are inherited. From every
+// step, by the bytes of a checkpoint.
+TEST(Resume, AcrossDivisionsOfGrowingCells) {
+  const Scenario scenario = load_scenario(pulled_block(R"(
+[cortex.walls]
+region = "all"
+faces = "lateral"
+tension_mN_per_m = 0.3
+stiffness_mN_per_m = 0.5
+relaxation_min = 0.1
+[cortex.top]
+region = "all"
+faces = "apical"
+tension_mN_per_m = 0.2
+variation = { spread = 0.3 }
+[hold.end]
+region = "all"
+x_um = [-1000, -29]
+directions = ["x"]
+[division.first]
+region = "all"
+at_s = 1
+growth_s = 2.5
+[division.second]
+region = "all"
+at_s = 2
+growth_s = 1
+max_generation = 2
+)"));
+  Simulation whole(scenario);
+  std::vector<RunMemory> memories;
+  while (whole.step()) memories.push_back(whole.memory());
+  ASSERT_EQ(whole.status(), RunStatus::end_time) << whole.failure();
+  ASSERT_GE(memories.size(), 8U);
+  EXPECT_EQ(whole.model().tissue.cells.size(), 24U);
+  for (std::size_t k = 0; k < memories.size(); ++k) {
+    SCOPED_TRACE(k);
+    Simulation rest(scenario);
+    go_on_by_bytes(rest, memories[k]);
+    while (rest.step()) (void)rest.memory();
+    expect_same(rest.state(), whole.state());
+    EXPECT_EQ(rest.steps(), whole.steps());
+    EXPECT_EQ(rest.measures().monitors, whole.measures().monitors);
+    EXPECT_EQ(as_numbers(*rest.memory().changes), as_numbers(*whole.memory().changes));
+  }
 }
 
 }  // namespace

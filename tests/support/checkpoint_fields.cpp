@@ -2,6 +2,8 @@
 
 #include <concepts>
 
+#include "core/number_list.hpp"
+
 namespace plica::support {
 namespace {
 
@@ -12,13 +14,6 @@ void add(std::vector<double>& to, const Vec3& vector) { to.insert(to.end(), vect
 void add(std::vector<double>& to, const std::optional<double>& value) {
   to.push_back(value ? 1 : 0);
   to.push_back(value.value_or(0));
-}
-
-void add(std::vector<double>& to, const PlannedDivision& planned) {
-  const auto& [cut, growth_s, volume_ratio] = planned;
-  const auto& [cell, first_wall, second_wall] = cut;
-  to.insert(to.end(), {static_cast<double>(cell.number()), static_cast<double>(first_wall),
-                       static_cast<double>(second_wall), growth_s, volume_ratio});
 }
 
 // A list: how long it is, and what is in it.
@@ -52,7 +47,7 @@ struct Fields {
 
   void take_run(const RunMemory& run) {
     const auto& [state, measures, steps, divisions, equilibrium_time_s, at_equilibrium, wanted_step_s, pace,
-                 computing_s, energies, past_divisions, whole_internals, outside_arrays] = run;
+                 computing_s, energies, changes, growth_ends_s, whole_internals, outside_arrays] = run;
     take_state(state);
     const auto& [measured, monitors, criteria_met, is_over] = measures;
     take("measures", measured), take("monitors", monitors), take("criteria_met", criteria_met),
@@ -68,10 +63,19 @@ struct Fields {
     take("whole_internals", whole_internals);
     numbers["outside_arrays"];
     for (const auto& [name, values] : outside_arrays) take("outside_arrays", name), take("outside_arrays", values);
-    numbers["past_divisions"];
-    for (const auto& past : past_divisions) {
-      const auto& [time_s, positions, planned] = *past;
-      take("past_divisions", time_s), take("past_divisions", positions), take("past_divisions", planned);
+    take("growth_ends_s", growth_ends_s);
+    take_changes(changes ? *changes : ModelMemory());
+  }
+
+  void take_changes(const ModelMemory& changes) {
+    const auto& [origin, rest_positions, cells, next_cell_id, held, growths, laws] = changes;
+    take("origin", as_numbers(origin)), take("rest_positions", rest_positions), take("next_cell_id", next_cell_id);
+    take("held", as_numbers(held)), take("growths", as_numbers(growths)), take("laws", laws);
+    for (const char* part : {"walls", "quadrilaterals", "rest_shape", "target_volume", "lineage"}) numbers[part];
+    for (const Cell& cell : cells) {
+      take("walls", as_numbers(cell.walls)), take("quadrilaterals", as_numbers(cell.quadrilaterals));
+      take("rest_shape", cell.rest_shape), take("target_volume", cell.target_volume);
+      take("lineage", as_numbers(cell.lineage));
     }
   }
 
@@ -108,6 +112,7 @@ Checkpoint marked(Checkpoint checkpoint) {
   run.pace.since_s = 1.5;
   run.outside_arrays = {{"signal", {0.5, 2}}, {"time of birth", {1, 3}}};
   run.whole_internals = {{6}, {7, 8}, {}};
+  run.growth_ends_s = {9, 10};
   run.state.trend.step_s = 0.75;
   run.state.trend.earlier_s = 0.125;
   run.state.trend.mean_velocities = run.state.trend.accelerations = {Vec3(1, 2, 3), Vec3(-4, 5, 6)};
