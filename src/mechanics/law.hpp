@@ -168,8 +168,8 @@ class Law {
     return {internal.begin(), internal.end()};
   }
 
-  /// Return what the law has of past tissues and positions: numbers that the law of the initial tissue, cells' origins
-  /// and the present tissue do not determine.
+  /// Return the data that past divisions left in the law: numbers that the law of the initial tissue, the origins of
+  /// cells and the present tissue do not determine.
   [[nodiscard]] virtual std::vector<double> past() const { return {}; }
   /// Return the law with this past for a tissue that divisions made of its own; `change` has no new nodes. Called on
   /// the law of the initial tissue, with reference positions. Throws InvalidNumbers for the past of another law or

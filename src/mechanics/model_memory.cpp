@@ -1,5 +1,6 @@
 #include "mechanics/model_memory.hpp"
 
+#include <set>
 #include <utility>
 
 #include "core/number_list.hpp"
@@ -30,6 +31,8 @@ Tissue restored(const Tissue& initial, const ModelMemory& memory, const Division
   }
   complete(tissue, change);
   require(tissue.node_count() == nodes);
+  for (const auto& element : tissue.elements)
+    require(std::set<NodeId>(element.begin(), element.end()).size() == element.size());
   return tissue;
 }
 

@@ -1,5 +1,6 @@
-// What divisions made of a model, for checkpoints: the part of it that does not follow from the model of the scenario.
-// Meshes, the sets of laws and most of their data are made again from this.
+// Changes of a model by divisions, for checkpoints: the data that do not follow from the model of the scenario. Mesh,
+// laws and constraints are rebuilt from them. Rejected: repeating the divisions, which takes the positions at each, and
+// saving all of the tissue, most of which is its mesh.
 #pragma once
 
 #include <array>
@@ -34,7 +35,7 @@ ModelMemory memory_of(const Model& model, std::vector<CellId> origin);
 /// the cells descend from such a tissue.
 Division change_of(const ModelMemory& memory, const Tissue& initial);
 
-/// Return the model with this memory; `nodes`: expected number of nodes of its tissue. Throws std::domain_error unless
+/// Return the model with this memory; `nodes`: expected number of nodes of its tissue. Throws std::logic_error unless
 /// they fit the initial model.
 Model restored(const Model& initial, const ModelMemory& memory, std::size_t nodes);
 

@@ -112,7 +112,7 @@ struct Cell {
   [[nodiscard]] std::span<const NodeId> basal_corners() const { return std::span(corners).first(sides()); }
   [[nodiscard]] std::span<const NodeId> apical_corners() const { return std::span(corners).last(sides()); }
 
-  /// What divisions change and the mesh follows from (division.hpp).
+  /// Members that divisions change and from which the mesh follows (division.hpp).
   static auto parts(auto& cell) {
     return std::tie(cell.walls, cell.quadrilaterals, cell.rest_shape, cell.target_volume, cell.lineage);
   }
