@@ -229,7 +229,7 @@ class Damage(Resuming):
 
     def test_a_newer_format_is_named(self):
         for path in (self.newest, self.previous):
-            path.write_bytes(re.sub(rb"\nplica checkpoint \d+ ", b"\nplica checkpoint 1 ", path.read_bytes()))
+            path.write_bytes(re.sub(rb"\nplica checkpoint \d+ ", b"\nplica checkpoint 99 ", path.read_bytes()))
         self.assert_says(self.resumed(self.block, status=4), "format")
 
 
