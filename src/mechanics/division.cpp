@@ -114,7 +114,7 @@ void divide_holds(Model& model, const Division& division) {
 // puts outside (it is blended from its edges, and need not lie between them) the next step takes back.
 void divide_obstacles(Model& model, State& state, const Division& division) {
   std::vector<double> forces;
-  std::vector<char> in_contact;
+  std::vector<char> on_obstacle;
   std::size_t first = 0;  // of the obstacle's contacts before
   for (auto& obstacle : model.obstacles) {
     std::map<NodeId, std::size_t> place;
@@ -122,12 +122,12 @@ void divide_obstacles(Model& model, State& state, const Division& division) {
     obstacle = obstacle->after_division(model.tissue, division);
     for (const NodeId node : obstacle->nodes()) {
       const auto known = place.find(node);
-      forces.push_back(known == place.end() ? 0 : state.contact_forces[known->second]);
-      in_contact.push_back(known == place.end() ? 0 : state.in_contact[known->second]);
+      forces.push_back(known == place.end() ? 0 : state.obstacle_forces[known->second]);
+      on_obstacle.push_back(known == place.end() ? 0 : state.on_obstacle[known->second]);
     }
   }
-  state.contact_forces = std::move(forces);
-  state.in_contact = std::move(in_contact);
+  state.obstacle_forces = std::move(forces);
+  state.on_obstacle = std::move(on_obstacle);
 }
 
 Vec3 momentum(const Model& model, const Vectors& velocities) {

@@ -89,10 +89,10 @@ State rest_state(const Model& model) {
   state.positions = model.tissue.rest_positions;
   state.velocities.assign(model.tissue.node_count(), Vec3::Zero());
   state.multipliers.assign(model.multiplier_count(), 0.0);
-  const Contacts contacts(model);
-  state.contact_forces.assign(contacts.size(), 0.0);
+  const ObstacleContacts contacts(model);
+  state.obstacle_forces.assign(contacts.size(), 0.0);
   for (std::size_t k = 0; k < contacts.size(); ++k)
-    state.in_contact.push_back(contacts.gap(k, state.positions).value <= 1e-9);
+    state.on_obstacle.push_back(contacts.gap(k, state.positions).value <= 1e-9);
   for (const auto& law : model.laws) state.internals.push_back(law->first_internal(model.tissue));
   return state;
 }

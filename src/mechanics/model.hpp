@@ -112,8 +112,8 @@ struct State {
   Vectors positions;                           // nodes; um
   Vectors velocities;                          // nodes; um/s, at the end of the last step
   std::vector<double> multipliers;             // all constraints, consecutively; first cell pressures, kPa
-  std::vector<double> contact_forces;          // Contacts; nN, >= 0
-  std::vector<char> in_contact;                // Contacts
+  std::vector<double> obstacle_forces;         // ObstacleContacts; nN, >= 0
+  std::vector<char> on_obstacle;               // ObstacleContacts
   std::vector<std::vector<double>> internals;  // laws: internal states (Law::next_internal)
   double divided_until_s = -1;                 // divisions due until then are done
 

@@ -8,7 +8,7 @@
 
 namespace plica {
 
-Contacts::Contacts(const Model& model) {
+ObstacleContacts::ObstacleContacts(const Model& model) {
   for (const auto& obstacle : model.obstacles)
     for (const NodeId node : obstacle->nodes()) {
       nodes_.push_back(node);
@@ -26,7 +26,7 @@ Contacts::Contacts(const Model& model) {
   starts_.push_back(by_node_.size());
 }
 
-Obstacle::Gap Contacts::gap(std::size_t contact, std::span<const Vec3> positions) const {
+Obstacle::Gap ObstacleContacts::gap(std::size_t contact, std::span<const Vec3> positions) const {
   const Vec3& position = positions[nodes_[contact].index()];
   std::optional<Answer>& last = last_[contact];
   // Bitwise comparison, so that earlier queries have no effect (0 and -0 are equal).

@@ -36,11 +36,11 @@ class Obstacle {
                                                                  const Division& division) const = 0;
 };
 
-/// Nodes of all obstacles of a model, obstacle by obstacle: the layout of State::contact_forces and in_contact. A node
-/// of several obstacles occurs several times.
-class Contacts {
+/// Nodes of all obstacles of a model, obstacle by obstacle: the layout of State::obstacle_forces and on_obstacle. A
+/// node of several obstacles occurs several times.
+class ObstacleContacts {
  public:
-  explicit Contacts(const Model& model);
+  explicit ObstacleContacts(const Model& model);
 
   [[nodiscard]] std::size_t size() const { return nodes_.size(); }
   [[nodiscard]] NodeId node(std::size_t contact) const { return nodes_[contact]; }

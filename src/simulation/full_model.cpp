@@ -42,8 +42,8 @@ State FullModel::whole_of(const Model& side, const State& state) const {
       const NodeId node = mirror_.image(of_whole).node;
       const auto contact = first + static_cast<std::size_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
       // Contact forces at nodes on a mirror plane are divided by the share of the side.
-      whole.contact_forces.push_back(state.contact_forces[contact] / side.tissue.own_share({&node, 1}));
-      whole.in_contact.push_back(state.in_contact[contact]);
+      whole.obstacle_forces.push_back(state.obstacle_forces[contact] / side.tissue.own_share({&node, 1}));
+      whole.on_obstacle.push_back(state.on_obstacle[contact]);
     }
     first += nodes.size();
   }

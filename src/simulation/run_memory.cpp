@@ -11,7 +11,7 @@ bool has_ended(const RunMemory& run, const RunControls& controls) {
 
 std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
   const std::size_t nodes = model.tissue.node_count(), multipliers = model.multiplier_count(),
-                    contacts = Contacts(model).size();
+                    contacts = ObstacleContacts(model).size();
   const auto none_or = [](std::size_t size, std::size_t full) { return size == 0 || size == full; };
   const State& state = run.state;
   if (state.time_s < 0 || run.steps < 0 || run.wanted_step_s < 0 || state.trend.step_s < 0 || state.trend.earlier_s < 0)
@@ -21,7 +21,7 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
   if (state.trend.step_s + state.trend.earlier_s > state.time_s * (1 + 1e-9))
     return "its steps are longer than its time";
   if (state.positions.size() != nodes || state.velocities.size() != nodes || state.multipliers.size() != multipliers ||
-      state.contact_forces.size() != contacts || state.in_contact.size() != contacts ||
+      state.obstacle_forces.size() != contacts || state.on_obstacle.size() != contacts ||
       !none_or(state.trend.mean_velocities.size(), nodes) || !none_or(state.trend.accelerations.size(), nodes) ||
       !none_or(state.trend.multiplier_rates.size(), multipliers) || state.internals.size() != model.laws.size() ||
       !none_or(run.energies.size(), model.laws.size() + 1))

@@ -81,15 +81,15 @@ const Extension slope = [](Model& model) {
 
 TEST(Plane, IsNotPassed) {
   Simulation simulation(extended(slope, {"time.end_s=30"}));
-  const Contacts contacts(simulation.model());
+  const ObstacleContacts contacts(simulation.model());
   double deepest = 0;
   int on_plane = 0;
   while (simulation.step()) {
     deepest = std::max(deepest, *simulation.measures()["max_shell_penetration_um"]);
     const State& state = simulation.state();
     for (std::size_t k = 0; k < contacts.size(); ++k) {
-      EXPECT_GE(state.contact_forces[k], 0);
-      on_plane += k >= simulation.model().obstacles.front()->nodes().size() && state.in_contact[k];
+      EXPECT_GE(state.obstacle_forces[k], 0);
+      on_plane += k >= simulation.model().obstacles.front()->nodes().size() && state.on_obstacle[k];
     }
   }
   EXPECT_EQ(simulation.status(), RunStatus::end_time) << simulation.failure();
@@ -111,10 +111,10 @@ TEST(Plane, ANodeMayTouchSeveral) {
   RunControls controls{.end_s = 1e5, .equilibrium_speed_um_per_s = 1e-6};
   const Simulation simulation = ran(std::move(model), controls);
   ASSERT_EQ(simulation.status(), RunStatus::equilibrium) << simulation.failure();
-  const Contacts contacts(simulation.model());
+  const ObstacleContacts contacts(simulation.model());
   Vec3 borne = Vec3::Zero();
   for (std::size_t k = 0; k < contacts.size(); ++k)
-    borne += simulation.state().contact_forces[k] * contacts.gap(k, simulation.state().positions).inward;
+    borne += simulation.state().obstacle_forces[k] * contacts.gap(k, simulation.state().positions).inward;
   // At rest the planes bear all of it, but for the drag of nodes slower than 1e-6 um/s.
   EXPECT_LE((borne - Vec3(8, 16, 24)).norm(), 1e-3);
 }

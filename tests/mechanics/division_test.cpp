@@ -90,15 +90,15 @@ TEST(DivideCells, HandsPressuresHoldsAndContactsOn) {
   model.held[3] = {true, false, true};
   State state = rest_state(model);
   for (std::size_t c = 0; c < state.multipliers.size(); ++c) state.multipliers[c] = static_cast<double>(c);
-  const std::size_t contacts = state.in_contact.size();
+  const std::size_t contacts = state.on_obstacle.size();
   const Division division = divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(40), 0}}});
   EXPECT_EQ(state.multipliers.at(450), 40);
   EXPECT_EQ(model.held[3], (std::array<bool, 3>{true, false, true}));
   EXPECT_EQ(model.held.size(), model.tissue.node_count());
-  EXPECT_EQ(state.in_contact.size(), contacts + 2);
+  EXPECT_EQ(state.on_obstacle.size(), contacts + 2);
   EXPECT_EQ(model.obstacles.front()->nodes().size(), contacts + 2);
-  for (std::size_t k = 0; k < state.in_contact.size(); ++k)
-    EXPECT_EQ(state.in_contact[k] != 0, model.obstacles.front()->nodes()[k].index() < division.free_nodes_before);
+  for (std::size_t k = 0; k < state.on_obstacle.size(); ++k)
+    EXPECT_EQ(state.on_obstacle[k] != 0, model.obstacles.front()->nodes()[k].index() < division.free_nodes_before);
 }
 
 void grow(Model& model, double time_s) {

@@ -275,8 +275,8 @@ TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
   unfit([](RunMemory& m) { m.state.positions.pop_back(); });
   unfit([](RunMemory& m) { m.state.velocities.clear(); });
   unfit([](RunMemory& m) { m.state.multipliers.push_back(0); });
-  unfit([](RunMemory& m) { m.state.contact_forces.push_back(0); });
-  unfit([](RunMemory& m) { m.state.in_contact.push_back(0); });
+  unfit([](RunMemory& m) { m.state.obstacle_forces.push_back(0); });
+  unfit([](RunMemory& m) { m.state.on_obstacle.push_back(0); });
   unfit([](RunMemory& m) { m.state.trend.earlier_s = -1; });
   unfit([](RunMemory& m) { m.state.trend.step_s = 1e308; });
   unfit([](RunMemory& m) { m.state.trend.mean_velocities.resize(1, Vec3::Zero()); });

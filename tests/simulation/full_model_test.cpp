@@ -196,7 +196,7 @@ TEST(FullModel, AFurrowBetweenTwoPlanesIsThatOfTheWhole) {
     ASSERT_EQ(mirrored.run(), RunStatus::end_time) << mirrored.failure();
     expect_same_end(plain, mirrored, 0.02);
     EXPECT_LT(largest_distance(plain.state().positions, mirrored.state().positions), 0.05);
-    const std::vector<double>&forces = mirrored.state().contact_forces, &plain_forces = plain.state().contact_forces;
+    const std::vector<double>&forces = mirrored.state().obstacle_forces, &plain_forces = plain.state().obstacle_forces;
     double sum = 0, plain_sum = 0;
     for (std::size_t k = 0; k < forces.size(); ++k) sum += forces[k], plain_sum += plain_forces[k];
     EXPECT_NEAR(sum, plain_sum, 0.01 * plain_sum);

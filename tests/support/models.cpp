@@ -51,9 +51,9 @@ Vectors unbalanced_forces(const Model& model, const State& before, const State& 
   Vectors forces(after.positions.size(), Vec3::Zero());
   for (const auto& law : model.laws) law->add_forces(step, forces);
   if (model.volumes.is_held()) model.volumes.add_forces(after.positions, after.multipliers, forces);
-  const Contacts contacts(model);
+  const ObstacleContacts contacts(model);
   for (std::size_t k = 0; k < contacts.size(); ++k)
-    forces[contacts.node(k).index()] += after.contact_forces[k] * contacts.gap(k, after.positions).inward;
+    forces[contacts.node(k).index()] += after.obstacle_forces[k] * contacts.gap(k, after.positions).inward;
   return forces;
 }
 

@@ -13,8 +13,8 @@ inline void expect_same(const State& a, const State& b) {
   EXPECT_EQ(a.positions, b.positions);
   EXPECT_EQ(a.velocities, b.velocities);
   EXPECT_EQ(a.multipliers, b.multipliers);
-  EXPECT_EQ(a.contact_forces, b.contact_forces);
-  EXPECT_EQ(a.in_contact, b.in_contact);
+  EXPECT_EQ(a.obstacle_forces, b.obstacle_forces);
+  EXPECT_EQ(a.on_obstacle, b.on_obstacle);
   EXPECT_EQ(a.divided_until_s, b.divided_until_s);
   EXPECT_EQ(a.trend.step_s, b.trend.step_s);
   EXPECT_EQ(a.trend.earlier_s, b.trend.earlier_s);

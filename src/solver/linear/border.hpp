@@ -23,16 +23,16 @@ namespace plica {
 /// With A0 = L L^T and Y = L^-1 B this is, between the two halves of a solve with the factor,
 ///   z = L^-1 f,   (D - Y^T Y) xi = [ n^T f, 0 ] - Y^T z,   x = L^-T (z - Y xi).
 /// Y is sparse: a column costs a fraction of half a solve, once.
-class ContactBorder {
+class ObstacleBorder {
  public:
   /// Start with a new factor of `matrix` (which must not change until the next call) with these frames and contacts.
-  void begin(const Model& model, const Contacts& contacts, const StepMatrix& matrix, std::vector<NodeFrame> frames,
-             std::vector<char> in_contact, std::size_t most_changes) {
+  void begin(const Model& model, const ObstacleContacts& contacts, const StepMatrix& matrix,
+             std::vector<NodeFrame> frames, std::vector<char> on_obstacle, std::size_t most_changes) {
     model_ = &model;
     contacts_ = &contacts;
     matrix_ = &matrix;
     frames_ = std::move(frames);
-    in_contact_ = std::move(in_contact);
+    on_obstacle_ = std::move(on_obstacle);
     most_changes_ = most_changes;
     columns_.clear();
     active_.clear();
@@ -43,14 +43,14 @@ class ContactBorder {
   [[nodiscard]] bool follow(const Iterate& at, const BlockCholesky& factor) {
     std::vector<std::size_t> changed, active;
     std::vector<Change> unknown;
-    for (std::size_t k = 0; k < at.in_contact.size(); ++k)
-      if (at.in_contact[k] != in_contact_[k]) changed.push_back(k);
+    for (std::size_t k = 0; k < at.on_obstacle.size(); ++k)
+      if (at.on_obstacle[k] != on_obstacle_[k]) changed.push_back(k);
     const auto column_of = [&](std::size_t k) { return std::ranges::find(columns_, k, &Column::contact); };
     for (const std::size_t k : changed) {
       if (column_of(k) != columns_.end()) continue;
       if (!is_alone(k, at)) return false;
       const std::size_t n = contacts_->node(k).index();
-      const bool leaves = !at.in_contact[k];
+      const bool leaves = !at.on_obstacle[k];
       unknown.push_back({k, leaves,
                          leaves ? Vec3(frames_[n].axes.col(frames_[n].fixed - 1))
                                 : without_held(*model_, n, contacts_->gap(k, at.positions).inward).normalized()});
@@ -113,7 +113,7 @@ class ContactBorder {
   // Whether its node touches nothing else, now or in the factor.
   [[nodiscard]] bool is_alone(std::size_t contact, const Iterate& at) const {
     return std::ranges::all_of(contacts_->beside(contact), [&](std::size_t other) {
-      return other == contact || (!at.in_contact[other] && !in_contact_[other]);
+      return other == contact || (!at.on_obstacle[other] && !on_obstacle_[other]);
     });
   }
   void add_column(const Change& change, const BlockCholesky& factor) {
@@ -155,10 +155,10 @@ class ContactBorder {
   }  // to single_
 
   const Model* model_ = nullptr;
-  const Contacts* contacts_ = nullptr;
+  const ObstacleContacts* contacts_ = nullptr;
   const StepMatrix* matrix_ = nullptr;
   std::vector<NodeFrame> frames_;
-  std::vector<char> in_contact_;
+  std::vector<char> on_obstacle_;
   std::size_t most_changes_ = 0;
   std::vector<Column> columns_;      // all changes since; some may be undone
   Eigen::MatrixXd complement_;       // D - Y^T Y of all columns

@@ -20,7 +20,7 @@ class DirectDirections final : public NewtonDirections {
     // A factor of a step of nearly this length converges nearly as fast; of other contacts it has the wrong unknowns.
     constexpr double alike = 0.2;
     const bool stale = factor_frames_.empty() || std::abs(factor_rate_s_ / step.rate_s - 1) > alike ||
-                       factor_contacts_ != at.in_contact;
+                       factor_on_obstacle_ != at.on_obstacle;
     const bool slow = forcing.residual_reduction > 0.1;  // less than Newton's method can
     if (stale || slow) {
       ++cost.factorisations;
@@ -63,7 +63,7 @@ class DirectDirections final : public NewtonDirections {
   }
   bool refresh(const Step& step, const Iterate& at) {
     factor_frames_ = node_frames(model_, contacts_, at);
-    factor_contacts_ = at.in_contact;
+    factor_on_obstacle_ = at.on_obstacle;
     factor_rate_s_ = step.rate_s;
     matrix_->assemble(model_, contacts_, step, at);
     matrix_->write_values(factor_frames_, values_);
@@ -88,7 +88,7 @@ class DirectDirections final : public NewtonDirections {
   }
 
   const Model& model_;
-  Contacts contacts_;
+  ObstacleContacts contacts_;
   std::unique_ptr<StepMatrix> matrix_;  // for the last patterns of the laws
   std::unique_ptr<LinearSolver> linear_solver_;
   DenseBorder dense_;
@@ -96,7 +96,7 @@ class DirectDirections final : public NewtonDirections {
 
   // Step::rate_s and frames of the present factor. Empty frames: no factor.
   std::vector<NodeFrame> factor_frames_;
-  std::vector<char> factor_contacts_;
+  std::vector<char> factor_on_obstacle_;
   double factor_rate_s_ = 0;
 };
 

@@ -9,10 +9,10 @@
 namespace plica {
 
 struct Iterate {
-  Vectors positions;                   // nodes; um
-  std::vector<double> multipliers;     // all constraints, as in State
-  std::vector<double> contact_forces;  // Contacts; nN
-  std::vector<char> in_contact;        // Contacts
+  Vectors positions;                    // nodes; um
+  std::vector<double> multipliers;      // all constraints, as in State
+  std::vector<double> obstacle_forces;  // ObstacleContacts; nN
+  std::vector<char> on_obstacle;        // ObstacleContacts
 };
 
 /// Residual of an iterate.

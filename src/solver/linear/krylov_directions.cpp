@@ -15,7 +15,7 @@
 namespace plica {
 namespace {
 
-constexpr std::size_t most_contact_changes = 32;  // before the factor is recomputed
+constexpr std::size_t most_obstacle_changes = 32;  // before the factor is recomputed
 
 // gamma times the size of a cell, over the mean stiffness of a node. Large, so that few iterations are left for the
 // multipliers; but single precision has to carry A beside it, multigrid finds nearly incompressible cells hard (and has
@@ -69,9 +69,9 @@ class KeptPreconditioner {
       matrix_.write_projected_blocks(frames, values_);
       if (!preconditioner_->factorise(values_, rigid_motions(at))) continue;
       if (factor_ != nullptr)
-        contacts_.begin(model_, system_.contacts(), matrix_, frames, at.in_contact, most_contact_changes);
+        contacts_.begin(model_, system_.contacts(), matrix_, frames, at.on_obstacle, most_obstacle_changes);
       border_dense_rows();
-      in_contact_ = at.in_contact;
+      on_obstacle_ = at.on_obstacle;
       return true;
     }
     return false;
@@ -83,7 +83,7 @@ class KeptPreconditioner {
     // A solve for each that has changed is too much. The multigrid has the node's own stiffness along directions that
     // were fixed, which is a preconditioner as long as they are few.
     std::size_t changed = 0;
-    for (std::size_t k = 0; k < at.in_contact.size(); ++k) changed += at.in_contact[k] != in_contact_[k];
+    for (std::size_t k = 0; k < at.on_obstacle.size(); ++k) changed += at.on_obstacle[k] != on_obstacle_[k];
     return changed <= system_.frames().size() / 100;
   }
 
@@ -184,11 +184,11 @@ class KeptPreconditioner {
   StepMatrix matrix_;    // with its J, at the iterate of the inverse
   std::unique_ptr<Preconditioner> preconditioner_;
   const BlockCholesky* factor_ = nullptr;  // the factor, if it is one, with its border
-  ContactBorder contacts_;
+  ObstacleBorder contacts_;
   std::optional<ChequerboardFactor> chequerboards_;  // for modes that gamma W does not resist
   DenseBorder dense_;
-  std::vector<char> in_contact_;  // contacts at the iterate of the inverse
-  std::vector<double> weights_;   // rows
+  std::vector<char> on_obstacle_;  // contacts at the iterate of the inverse
+  std::vector<double> weights_;    // rows
 
   mutable std::vector<double> chequered_;  // scratch
   mutable Vectors moved_;

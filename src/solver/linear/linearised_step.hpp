@@ -49,15 +49,15 @@ class LinearisedStep {
     fixed_nodes_.clear();
     for (std::size_t n = 0; n < frames_.size(); ++n)
       if (frames_[n].fixed > 0) fixed_nodes_.push_back(n);
-    contact_tangents_.clear();
-    for (std::size_t k = 0; k < at.in_contact.size(); ++k)
-      if (at.in_contact[k])
-        contact_tangents_.emplace_back(contacts_.node(k).index(),
-                                       -at.contact_forces[k] * contacts_.gap(k, at.positions).hessian);
+    obstacle_tangents_.clear();
+    for (std::size_t k = 0; k < at.on_obstacle.size(); ++k)
+      if (at.on_obstacle[k])
+        obstacle_tangents_.emplace_back(contacts_.node(k).index(),
+                                        -at.obstacle_forces[k] * contacts_.gap(k, at.positions).hessian);
     jacobian_.update(at_end(model_, step), at.positions);
   }
 
-  [[nodiscard]] const Contacts& contacts() const { return contacts_; }
+  [[nodiscard]] const ObstacleContacts& contacts() const { return contacts_; }
   [[nodiscard]] const std::vector<NodeFrame>& frames() const { return frames_; }
   /// Return the last iterate.
   [[nodiscard]] const ConstraintJacobian& jacobian() const { return jacobian_; }
@@ -92,7 +92,7 @@ class LinearisedStep {
                                        forces);
       });
     model_.tissue.carry_hanging(forces);
-    for (const auto& [node, tangent] : contact_tangents_) forces[node] += tangent * dx[node];
+    for (const auto& [node, tangent] : obstacle_tangents_) forces[node] += tangent * dx[node];
     jacobian_.add_forces(of_rows(direction), -1, forces);
     project(forces);
     const std::span<double> rates = of_rows(product);
@@ -134,12 +134,12 @@ class LinearisedStep {
  private:
   const Model& model_;
   std::size_t nodes_;
-  Contacts contacts_;
+  ObstacleContacts contacts_;
   ConstraintJacobian jacobian_;
   std::vector<double> units_;  // rows
   std::vector<NodeFrame> frames_;
   std::vector<std::size_t> fixed_nodes_;
-  std::vector<std::pair<std::size_t, Mat3>> contact_tangents_;  // by node
+  std::vector<std::pair<std::size_t, Mat3>> obstacle_tangents_;  // by node
 };
 
 }  // namespace plica

@@ -21,22 +21,22 @@ struct NodeFrame {
 };
 
 /// Return the frames of free nodes: held axes first, then normals.
-std::vector<NodeFrame> node_frames(const Model& model, const Contacts& contacts, const Iterate& at);
+std::vector<NodeFrame> node_frames(const Model& model, const ObstacleContacts& contacts, const Iterate& at);
 
 /// Return `direction` without components along held axes.
 Vec3 without_held(const Model& model, std::size_t node, Vec3 direction);
 
 /// Independent contacts of one node, beyond its held axes and earlier contacts.
-struct NodeContacts {
+struct NodeObstacles {
   int count = 0;
   std::array<std::size_t, 3> contact;
-  std::array<Vec3, 3> inward;  // normals of the obstacles, direction of contact forces
-  std::array<Vec3, 3> way;     // their free parts, along which the node can move
+  std::array<Vec3, 3> inward;       // normals of the obstacles, direction of obstacle forces
+  std::array<Vec3, 3> free_normal;  // parts of the normals outside held axes; the node moves along them
 };
-NodeContacts node_contacts(const Model& model, const Contacts& contacts, std::span<const std::size_t> of_node,
-                           const Iterate& at);
+NodeObstacles node_obstacles(const Model& model, const ObstacleContacts& contacts, std::span<const std::size_t> of_node,
+                             const Iterate& at);
 
 /// Move nodes in contact back onto their obstacles, along their free normals.
-void return_to_obstacles(const Model& model, const Contacts& contacts, Iterate& at);
+void return_to_obstacles(const Model& model, const ObstacleContacts& contacts, Iterate& at);
 
 }  // namespace plica

@@ -113,7 +113,7 @@ void StepMatrix::add_lower(NodeId row, NodeId column, const Mat3& block) {
     blocks_[at] += block;
 }
 
-void StepMatrix::assemble(const Model& model, const Contacts& contacts, const Step& step, const Iterate& at) {
+void StepMatrix::assemble(const Model& model, const ObstacleContacts& contacts, const Step& step, const Iterate& at) {
   set_zero();
   const auto refuse_outside = [&](std::string_view name) {
     if (is_outside_.exchange(false))
@@ -130,9 +130,9 @@ void StepMatrix::assemble(const Model& model, const Contacts& contacts, const St
     refuse_outside(constraint.name());
   });
   jacobian_.update(at_end(model, step), at.positions);
-  for (std::size_t k = 0; k < at.in_contact.size(); ++k)
-    if (at.in_contact[k])
-      add_block(contacts.node(k), contacts.node(k), -at.contact_forces[k] * contacts.gap(k, at.positions).hessian);
+  for (std::size_t k = 0; k < at.on_obstacle.size(); ++k)
+    if (at.on_obstacle[k])
+      add_block(contacts.node(k), contacts.node(k), -at.obstacle_forces[k] * contacts.gap(k, at.positions).hessian);
 }
 
 void StepMatrix::add_constraint_stiffness(const Model& model, std::span<const Vec3> positions,

@@ -40,7 +40,7 @@ class StepMatrix final : public TangentSink {
   void set_zero();
   /// Assemble the tangent of all laws, constraints and obstacles, and J, at an iterate. std::logic_error, naming the
   /// law, if it adds a block outside its pattern.
-  void assemble(const Model& model, const Contacts& contacts, const Step& step, const Iterate& at);
+  void assemble(const Model& model, const ObstacleContacts& contacts, const Step& step, const Iterate& at);
   void add_block(NodeId row, NodeId column, const Mat3& block) override;
   [[nodiscard]] bool takes_apart() const override { return true; }
   void take_gradients(const Model& model, std::span<const Vec3> positions) { jacobian_.update(model, positions); }

@@ -87,8 +87,8 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
   for (std::size_t n = 0; n < nodes; ++n) next.positions[n] += as_vectors(displacements)[n];
   next.time_s = state.time_s + duration_s;
   next.multipliers.assign(state.multipliers.size(), 0.0);
-  next.contact_forces.assign(state.contact_forces.size(), 0.0);
-  next.in_contact.assign(state.in_contact.size(), 0);
+  next.obstacle_forces.assign(state.obstacle_forces.size(), 0.0);
+  next.on_obstacle.assign(state.on_obstacle.size(), 0);
   step.positions = next.positions;
   next.internals = next_internals(model_, step);
   record_motion(state, duration_s, TimeOrder::first, next);

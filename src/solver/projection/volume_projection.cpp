@@ -262,18 +262,18 @@ bool VolumeProjection::project(std::size_t k, Vectors& positions, StepReport& re
 // Goes as far as in the step before: next to rest that is nearly all of the way.
 void VolumeProjection::repeat_last_step(const State& before, double duration_s, State& after) {
   moved_.assign(kept_.size(), 0.0);
-  pushed_.assign(after.contact_forces.size(), 0.0);
+  pushed_.assign(after.obstacle_forces.size(), 0.0);
   for (std::size_t k = 0; k < kept_.size(); ++k)
     if (const auto& cell = kept_[k].cell; cell && before.multipliers[cell->index()] != 0) {
       look_at(kept_[k], after.positions);
       move(k, before.multipliers[cell->index()] * duration_s, after.positions);
     }
   for (std::size_t k = 0; k < pushed_.size(); ++k)
-    if (const double more = before.contact_forces[k] - after.contact_forces[k]; more > 0)
-      push(k, more * contact_weight(k, duration_s), after.positions);
+    if (const double more = before.obstacle_forces[k] - after.obstacle_forces[k]; more > 0)
+      push(k, more * obstacle_weight(k, duration_s), after.positions);
 }
 
-double VolumeProjection::contact_weight(std::size_t k, double duration_s) const {
+double VolumeProjection::obstacle_weight(std::size_t k, double duration_s) const {
   return weights_[contacts_.node(k).index()] * duration_s;
 }
 
@@ -310,8 +310,8 @@ void VolumeProjection::apply(const State& before, double duration_s, const std::
   for (std::size_t k = 0; k < kept_.size(); ++k)
     if (kept_[k].cell) after.multipliers[kept_[k].cell->index()] += moved_[k] / duration_s;
   for (std::size_t k = 0; k < pushed_.size(); ++k) {
-    after.contact_forces[k] += pushed_[k] / contact_weight(k, duration_s);
-    after.in_contact[k] = after.contact_forces[k] > 0;
+    after.obstacle_forces[k] += pushed_[k] / obstacle_weight(k, duration_s);
+    after.on_obstacle[k] = after.obstacle_forces[k] > 0;
   }
 }
 

@@ -72,7 +72,7 @@ class VolumeProjection {
   VolumeProjection(const Model& model, const std::optional<ProjectionRule>& rule);
 
   /// Project `after`, the result of a force step from `before`, onto volumes and obstacles; held directions of nodes
-  /// stay. Adds the multipliers over the step to those of the volumes and contact forces of `after`, which contain the
+  /// stay. Adds the multipliers over the step to those of the volumes and obstacle forces of `after`, which contain the
   /// part of the force step; with equal weights, as if every node had the mean mobility. Sweeps start from the values
   /// in `before`. The report receives the counts and a status: converged, not_projected (with the worst cell), or
   /// interrupted.
@@ -87,7 +87,7 @@ class VolumeProjection {
   };
 
   void set_weights(const State& before, double duration_s);
-  [[nodiscard]] double contact_weight(std::size_t k, double duration_s) const;  // um/nN
+  [[nodiscard]] double obstacle_weight(std::size_t k, double duration_s) const;  // um/nN
   void repeat_last_step(const State& before, double duration_s, State& after);
   void push(std::size_t k, double distance_um, Vectors& positions);
   bool project_obstacles(Vectors& positions);
@@ -97,7 +97,7 @@ class VolumeProjection {
   void judge(const Vectors& positions, StepReport& report) const;
 
   const Model& model_;
-  Contacts contacts_;
+  ObstacleContacts contacts_;
   ProjectionRule rule_;
   std::vector<Kept> kept_;
   std::vector<double> weights_;                      // nodes; um/(nN s)

@@ -11,15 +11,15 @@ namespace plica {
 namespace {
 
 // The ways of a node's contacts, normalised, as columns.
-Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> normals_of(const NodeContacts& touched) {
+Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> normals_of(const NodeObstacles& touched) {
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> normals(3, touched.count);
-  for (int k = 0; k < touched.count; ++k) normals.col(k) = touched.way[k].normalized();
+  for (int k = 0; k < touched.count; ++k) normals.col(k) = touched.free_normal[k].normalized();
   return normals;
 }
 
 }  // namespace
 
-/// Residual of an iterate of a step, and the contact states of nodes.
+/// Residual of an iterate of a step, and the contacts of nodes with obstacles.
 class Balance {
  public:
   Balance(const Model& model, const StepTolerances& tolerances)
@@ -33,7 +33,7 @@ class Balance {
       constraint_rounding_.push_back(model.constraint(place).rounding(model.tissue, position_rounding_));
   }
 
-  /// Compute the residual and sets the contact forces of the iterate: obstacles bear the forces that push nodes
+  /// Compute the residual and sets the obstacle forces of the iterate: obstacles bear the forces that push nodes
   /// outward along their normals.
   [[nodiscard]] Residual residual(const Step& step, Iterate& at) const {
     Residual r;
@@ -70,7 +70,7 @@ class Balance {
       r.constraint_excess =
           std::max(r.constraint_excess, worst / std::max(tolerances_.constraint, constraint_rounding_[place]));
     });
-    add_contact_forces(at, r.forces, of_one);
+    add_obstacle_forces(at, r.forces, of_one);
     take();
 
     Vectors& free = of_one;
@@ -91,17 +91,17 @@ class Balance {
   /// contact changed. `changes`: contacts; number of changes in this step, updated here.
   bool revise_contacts(Iterate& at, std::span<unsigned char> changes) const {
     constexpr unsigned char many = 3;
-    std::vector<char> wanted(at.in_contact.begin(), at.in_contact.end());
+    std::vector<char> wanted(at.on_obstacle.begin(), at.on_obstacle.end());
     parallel_for(wanted.size(), [&](std::size_t k) {
       const Obstacle::Gap gap = contacts_.gap(k, at.positions);
       // A node that is held where an obstacle would push it needs no contact.
       if (without_held(model_, contacts_.node(k).index(), gap.inward).norm() < 1e-6) {
-        at.in_contact[k] = wanted[k] = 0;
-        at.contact_forces[k] = 0;
-      } else if (at.in_contact[k]) {
+        at.on_obstacle[k] = wanted[k] = 0;
+        at.obstacle_forces[k] = 0;
+      } else if (at.on_obstacle[k]) {
         // Pulled inward for real: let go. Forces of rounding's size are none.
-        if (at.contact_forces[k] < -1e-12 * force_scale_) wanted[k] = 0;
-        if (at.contact_forces[k] < 0) at.contact_forces[k] = 0;
+        if (at.obstacle_forces[k] < -1e-12 * force_scale_) wanted[k] = 0;
+        if (at.obstacle_forces[k] < 0) at.obstacle_forces[k] = 0;
       } else if (gap.value < -tolerances_.gap_um) {
         wanted[k] = 1;
       }
@@ -111,33 +111,33 @@ class Balance {
     bool changed = false, any_waits = false;
     std::size_t first_waiting = 0;
     for (std::size_t k = 0; k < wanted.size(); ++k) {
-      if (wanted[k] == at.in_contact[k]) continue;
+      if (wanted[k] == at.on_obstacle[k]) continue;
       if (changes[k] >= many) {
         if (!any_waits) first_waiting = k;
         any_waits = true;
         continue;
       }
-      at.in_contact[k] = wanted[k];
+      at.on_obstacle[k] = wanted[k];
       ++changes[k];
       changed = true;
     }
-    if (any_waits && !changed) at.in_contact[first_waiting] = wanted[first_waiting];
+    if (any_waits && !changed) at.on_obstacle[first_waiting] = wanted[first_waiting];
     return_to_obstacles(model_, contacts_, at);
     return changed || any_waits;
   }
 
-  [[nodiscard]] const Contacts& contacts() const { return contacts_; }
+  [[nodiscard]] const ObstacleContacts& contacts() const { return contacts_; }
 
  private:
-  void add_contact_forces(Iterate& at, std::span<const Vec3> others, std::span<Vec3> forces) const {
+  void add_obstacle_forces(Iterate& at, std::span<const Vec3> others, std::span<Vec3> forces) const {
     parallel_for(contacts_.node_count(), [&](std::size_t place) {
       const auto of_node = contacts_.at_node(place);
-      const NodeContacts touched = node_contacts(model_, contacts_, of_node, at);
+      const NodeObstacles touched = node_obstacles(model_, contacts_, of_node, at);
       if (touched.count == 0) return;
       const std::size_t n = contacts_.node(of_node.front()).index();
       if (touched.count == 1) {
-        const Vec3 normal = touched.way[0].normalized();
-        double& force = at.contact_forces[touched.contact[0]];
+        const Vec3 normal = touched.free_normal[0].normalized();
+        double& force = at.obstacle_forces[touched.contact[0]];
         force = -normal.dot(others[n]) / normal.dot(touched.inward[0]);
         forces[n] = force * touched.inward[0];
         return;
@@ -147,18 +147,18 @@ class Balance {
       for (int k = 0; k < touched.count; ++k) pushes.col(k) = touched.inward[k];
       const Eigen::VectorXd sizes =
           (normals.transpose() * pushes).partialPivLu().solve(-normals.transpose() * others[n]);
-      for (const std::size_t k : of_node) at.contact_forces[k] = 0;  // redundant contacts bear none
-      for (int k = 0; k < touched.count; ++k) at.contact_forces[touched.contact[k]] = sizes[k];
+      for (const std::size_t k : of_node) at.obstacle_forces[k] = 0;  // redundant contacts bear none
+      for (int k = 0; k < touched.count; ++k) at.obstacle_forces[touched.contact[k]] = sizes[k];
       forces[n] = pushes * sizes;
     });
   }
   void take_out_normals(const Iterate& at, std::span<Vec3> forces) const {
     parallel_for(contacts_.node_count(), [&](std::size_t place) {
       const auto of_node = contacts_.at_node(place);
-      const NodeContacts touched = node_contacts(model_, contacts_, of_node, at);
+      const NodeObstacles touched = node_obstacles(model_, contacts_, of_node, at);
       Vec3& force = forces[contacts_.node(of_node.front()).index()];
       if (touched.count == 1) {
-        const Vec3 normal = touched.way[0].normalized();
+        const Vec3 normal = touched.free_normal[0].normalized();
         force -= normal.dot(force) * normal;
       } else if (touched.count > 1) {
         const auto normals = normals_of(touched);
@@ -169,7 +169,7 @@ class Balance {
 
   const Model& model_;
   StepTolerances tolerances_;
-  Contacts contacts_;
+  ObstacleContacts contacts_;
   double force_scale_;                       // nN
   double position_rounding_;                 // um
   double elastic_rounding_;                  // nN: resulting error of elastic forces
@@ -221,7 +221,7 @@ bool NewtonStepper::search_line(const Step& step, const Direction& d, Iterate& a
 }
 
 Iterate NewtonStepper::forecast(const State& state, double duration_s) const {
-  Iterate at{state.positions, state.multipliers, state.contact_forces, state.in_contact};
+  Iterate at{state.positions, state.multipliers, state.obstacle_forces, state.on_obstacle};
   const State::Trend& trend = state.trend;
   // Mean velocities belong to the middles of steps.
   const double later_s = 0.5 * (trend.step_s + duration_s);
@@ -239,7 +239,7 @@ Iterate NewtonStepper::forecast(const State& state, double duration_s) const {
 StepReport NewtonStepper::advance(const State& state, double duration_s, bool from_rest, State& next,
                                   const Model* grown) {
   const auto unmoved = [&] {
-    return Iterate{state.positions, state.multipliers, state.contact_forces, state.in_contact};
+    return Iterate{state.positions, state.multipliers, state.obstacle_forces, state.on_obstacle};
   };
   Iterate at = from_rest ? unmoved() : forecast(state, duration_s);
   const TimeOrder order = std::min(order_, possible_order(state, duration_s));
@@ -259,29 +259,29 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
             .internals = state.internals,
             .grown = grown};
   StepReport report;
-  std::vector<unsigned char> contact_changes(at.in_contact.size());
+  std::vector<unsigned char> obstacle_changes(at.on_obstacle.size());
   const auto first_residual = [&](Iterate& start, std::vector<unsigned char>& changes) {
     balance_->revise_contacts(start, changes);
     step.positions = start.positions;
     return balance_->residual(step, start);
   };
-  Residual now = first_residual(at, contact_changes);
+  Residual now = first_residual(at, obstacle_changes);
   // Near the inversion barrier, the prediction drives corners deep into it, and Newton's method takes many iterations
   // back: fewer from the previous positions.
   constexpr double poor_forecast = 0.05;  // residual's forces, relative
   if (!from_rest && !(now.force < poor_forecast)) {
     Iterate start = unmoved();
-    std::vector<unsigned char> changes(start.in_contact.size());
+    std::vector<unsigned char> changes(start.on_obstacle.size());
     if (Residual there = first_residual(start, changes); there.finite() && !(now.force <= there.force)) {
       at = std::move(start);
-      contact_changes = std::move(changes);
+      obstacle_changes = std::move(changes);
       now = std::move(there);
     }
     step.positions = at.positions;
   }
   // Whether nothing wants to leave or join an obstacle, by the forces of this iterate.
   const auto settle_contacts = [&] {
-    if (!balance_->revise_contacts(at, contact_changes)) return true;
+    if (!balance_->revise_contacts(at, obstacle_changes)) return true;
     step.positions = at.positions;
     now = balance_->residual(step, at);
     return false;
@@ -344,8 +344,8 @@ void NewtonStepper::accept(const State& state, const Step& step, double duration
   next.divided_until_s = state.divided_until_s;
   next.positions = std::move(at.positions);
   next.multipliers = std::move(at.multipliers);
-  next.contact_forces = std::move(at.contact_forces);
-  next.in_contact = std::move(at.in_contact);
+  next.obstacle_forces = std::move(at.obstacle_forces);
+  next.on_obstacle = std::move(at.on_obstacle);
   record_motion(state, duration_s, order, next);
 }
 

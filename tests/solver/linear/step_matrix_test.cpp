@@ -190,9 +190,9 @@ TEST(StepMatrix, ABlockOutsideThePatternIsAnErrorThatNamesTheLaw) {
   model.laws.push_back(std::make_unique<Liar>());
   StepMatrix matrix(model);
   const State rest = rest_state(model);
-  const Iterate at{rest.positions, rest.multipliers, rest.contact_forces, rest.in_contact};
+  const Iterate at{rest.positions, rest.multipliers, rest.obstacle_forces, rest.on_obstacle};
   const Step step{rest.positions, rest.positions, rest.velocities, 1, 1};
-  EXPECT_SAYS(error_of<std::logic_error>([&] { matrix.assemble(model, Contacts(model), step, at); }), "liar");
+  EXPECT_SAYS(error_of<std::logic_error>([&] { matrix.assemble(model, ObstacleContacts(model), step, at); }), "liar");
 }
 
 /// A ball of n x n squares a face, all cells of the same size, at rest, every third apical node free of the shell.
@@ -202,9 +202,9 @@ struct Ball {
     add_drag(model, 0.1);
     model.obstacles.push_back(std::make_unique<Vitelline>(model.tissue, *model.tissue.outer_shape));
     const State rest = rest_state(model);
-    at = {rest.positions, rest.multipliers, rest.contact_forces, rest.in_contact};
-    for (std::size_t k = 0; k < at.in_contact.size(); ++k) at.in_contact[k] = k % 3 != 0;
-    frames = node_frames(model, Contacts(model), at);
+    at = {rest.positions, rest.multipliers, rest.obstacle_forces, rest.on_obstacle};
+    for (std::size_t k = 0; k < at.on_obstacle.size(); ++k) at.on_obstacle[k] = k % 3 != 0;
+    frames = node_frames(model, ObstacleContacts(model), at);
   }
   [[nodiscard]] Step step() const { return {at.positions, at.positions, velocities, 5, 5}; }
 
@@ -218,7 +218,7 @@ struct Ball {
 TEST(ChequerboardFactor, IsTheInverseOfWhatForcesOnSingleNodesDo) {
   const Ball ball(8);
   StepMatrix matrix(ball.model);
-  matrix.assemble(ball.model, Contacts(ball.model), ball.step(), ball.at);
+  matrix.assemble(ball.model, ObstacleContacts(ball.model), ball.step(), ball.at);
   const ConstraintJacobian& jacobian = matrix.jacobian();
   ChequerboardFactor factor(jacobian, ball.frames.size());
   ASSERT_TRUE(factor.factorise(jacobian, matrix, ball.frames));
@@ -262,10 +262,10 @@ TEST(ChequerboardFactor, TakesCellsThatAreHeld) {
   for (const NodeId node : ball.model.tissue.elements[7]) ball.model.held[node.index()] = {true, true, true};
   const auto on_shell = ball.model.obstacles.front()->nodes();  // held nodes are never in contact
   for (std::size_t k = 0; k < on_shell.size(); ++k)
-    if (ball.model.held[on_shell[k].index()][0]) ball.at.in_contact[k] = false;
-  ball.frames = node_frames(ball.model, Contacts(ball.model), ball.at);
+    if (ball.model.held[on_shell[k].index()][0]) ball.at.on_obstacle[k] = false;
+  ball.frames = node_frames(ball.model, ObstacleContacts(ball.model), ball.at);
   StepMatrix matrix(ball.model);
-  matrix.assemble(ball.model, Contacts(ball.model), ball.step(), ball.at);
+  matrix.assemble(ball.model, ObstacleContacts(ball.model), ball.step(), ball.at);
   ChequerboardFactor factor(matrix.jacobian(), ball.frames.size());
   ASSERT_TRUE(factor.factorise(matrix.jacobian(), matrix, ball.frames));
   std::vector<double> rates(matrix.jacobian().sparse_rows(), 1.0);
@@ -279,15 +279,15 @@ TEST(ChequerboardFactor, TakesCellsThatAreHeld) {
 struct Case {
   explicit Case(const Model& m, unsigned seed = 1) : model(m), random(seed) {
     const State rest = rest_state(model);
-    at = {rest.positions, rest.multipliers, rest.contact_forces, rest.in_contact};
+    at = {rest.positions, rest.multipliers, rest.obstacle_forces, rest.on_obstacle};
     previous = rest.positions;
     const Vectors moves = random.vectors(previous.size());
     for (std::size_t n = 0; n < moves.size(); ++n) at.positions[n] += 0.2 * moves[n];
     model.tissue.place_hanging(at.positions);
     for (double& pressure : at.multipliers) pressure = 0.02 * random.number();
-    for (std::size_t k = 0; k < at.in_contact.size(); ++k) at.in_contact[k] = k % 3 != 0;
-    return_to_obstacles(model, Contacts(model), at);
-    for (std::size_t k = 0; k < at.in_contact.size(); ++k) at.contact_forces[k] = at.in_contact[k] ? 0.5 : 0;
+    for (std::size_t k = 0; k < at.on_obstacle.size(); ++k) at.on_obstacle[k] = k % 3 != 0;
+    return_to_obstacles(model, ObstacleContacts(model), at);
+    for (std::size_t k = 0; k < at.on_obstacle.size(); ++k) at.obstacle_forces[k] = at.on_obstacle[k] ? 0.5 : 0;
     residual.forces = random.vectors(previous.size());
     for (std::size_t n = model.tissue.free_node_count(); n < previous.size(); ++n) residual.forces[n].setZero();
     for (std::size_t c = 0; c < at.multipliers.size(); ++c) residual.deficits.push_back(random.number());
@@ -368,7 +368,7 @@ TEST(NewtonDirections, FarFromBalanceTheSemidefiniteTangentShowsTheWayOutOfInsta
   const auto left = [&](const Direction& found, bool semidefinite) {
     Step step = given.step();
     step.semidefinite_tangent = semidefinite;
-    matrix.assemble(model, Contacts(model), step, given.at);
+    matrix.assemble(model, ObstacleContacts(model), step, given.at);
     ConstraintJacobian jacobian(model);
     jacobian.update(model, given.at.positions);
     Vectors rest = product_of(matrix, found.positions);
@@ -403,37 +403,38 @@ TEST(NewtonDirections, EveryWayLeadsToTheSameState) {
     }
     ends.push_back(state);
     EXPECT_LE(largest_distance(state.positions, ends.front().positions), 1e-6);
-    EXPECT_EQ(state.in_contact, ends.front().in_contact);
+    EXPECT_EQ(state.on_obstacle, ends.front().on_obstacle);
   }
 }
 
 // Nodes leave the shell and others come to it: factor and border are the inverse of the new matrix.
-TEST(ContactBorder, SolvesForTheContactsOfNow) {
+TEST(ObstacleBorder, SolvesForTheContactsOfNow) {
   const Model model = furrowing_sphere();
   Case given(model);
   StepMatrix matrix(model);
   Step step = given.step();
   step.semidefinite_tangent = true;
-  matrix.assemble(model, Contacts(model), step, given.at);
+  matrix.assemble(model, ObstacleContacts(model), step, given.at);
   const auto factor = [&](const Iterate& at) {
     auto cholesky = std::make_unique<BlockCholesky>(matrix.layout());
     UninitialisedVector<float> values;
-    matrix.write_projected_blocks(node_frames(model, Contacts(model), at), values);
+    matrix.write_projected_blocks(node_frames(model, ObstacleContacts(model), at), values);
     EXPECT_TRUE(cholesky->factorise(values));
     return cholesky;
   };
   const auto before = factor(given.at);
-  const Contacts contacts(model);
-  ContactBorder border;
-  border.begin(model, contacts, matrix, node_frames(model, Contacts(model), given.at), given.at.in_contact, 32);
+  const ObstacleContacts contacts(model);
+  ObstacleBorder border;
+  border.begin(model, contacts, matrix, node_frames(model, ObstacleContacts(model), given.at), given.at.on_obstacle,
+               32);
 
   Iterate now = given.at;
   int changes = 0;
-  for (std::size_t k = 0; k < now.in_contact.size(); k += 17, ++changes) now.in_contact[k] ^= 1;
+  for (std::size_t k = 0; k < now.on_obstacle.size(); k += 17, ++changes) now.on_obstacle[k] ^= 1;
   ASSERT_GT(changes, 20);
   ASSERT_TRUE(border.follow(now, *before));
   const auto after = factor(now);
-  const std::vector<NodeFrame> frames = node_frames(model, Contacts(model), now);
+  const std::vector<NodeFrame> frames = node_frames(model, ObstacleContacts(model), now);
   Vectors x = given.random.vectors(frames.size());
   for (std::size_t n = 0; n < x.size(); ++n) x[n] = frames[n].free_part(x[n]);
   std::vector<float> expected;
@@ -443,7 +444,8 @@ TEST(ContactBorder, SolvesForTheContactsOfNow) {
   after->solve(expected);
   double difference = 0, without = 0, length = 0;
   Vectors alone = forces;
-  border.begin(model, contacts, matrix, node_frames(model, Contacts(model), given.at), given.at.in_contact, 32);
+  border.begin(model, contacts, matrix, node_frames(model, ObstacleContacts(model), given.at), given.at.on_obstacle,
+               32);
   border.solve(*before, alone);
   for (std::size_t n = 0; n < x.size(); ++n) {
     const Vec3 should_be(expected[3 * n], expected[3 * n + 1], expected[3 * n + 2]);
@@ -458,24 +460,25 @@ TEST(ContactBorder, SolvesForTheContactsOfNow) {
 // A factor of a case, and its border before any contact has changed.
 struct Bordered {
   explicit Bordered(const Case& given, const Model& model) : contacts(model), matrix(model), factor(matrix.layout()) {
-    matrix.assemble(model, Contacts(model), given.step(), given.at);
+    matrix.assemble(model, ObstacleContacts(model), given.step(), given.at);
     UninitialisedVector<float> values;
-    matrix.write_projected_blocks(node_frames(model, Contacts(model), given.at), values);
+    matrix.write_projected_blocks(node_frames(model, ObstacleContacts(model), given.at), values);
     EXPECT_TRUE(factor.factorise(values));
-    border.begin(model, contacts, matrix, node_frames(model, Contacts(model), given.at), given.at.in_contact, 32);
+    border.begin(model, contacts, matrix, node_frames(model, ObstacleContacts(model), given.at), given.at.on_obstacle,
+                 32);
   }
-  Contacts contacts;
+  ObstacleContacts contacts;
   StepMatrix matrix;
   BlockCholesky factor;
-  ContactBorder border;
+  ObstacleBorder border;
 };
 
-TEST(ContactBorder, TakesUpOnlySoManyChanges) {
+TEST(ObstacleBorder, TakesUpOnlySoManyChanges) {
   const Model model = furrowing_sphere();
   const Case given(model);
   Bordered now(given, model);
   Iterate changed = given.at;
-  for (char& contact : changed.in_contact) contact ^= 1;
+  for (char& contact : changed.on_obstacle) contact ^= 1;
   EXPECT_FALSE(now.border.follow(changed, now.factor));
 }
 

@@ -175,7 +175,7 @@ TEST(ProjectedStepper, OneAndTwoThreadsGiveTheSameBits) {
     }
     EXPECT_EQ(ends[0].positions, ends[1].positions);
     EXPECT_EQ(ends[0].multipliers, ends[1].multipliers);
-    EXPECT_EQ(ends[0].contact_forces, ends[1].contact_forces);
+    EXPECT_EQ(ends[0].obstacle_forces, ends[1].obstacle_forces);
   }
 }
 

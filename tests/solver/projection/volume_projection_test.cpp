@@ -174,18 +174,18 @@ TEST(VolumeProjection, ShellAndVolumesAreMetTogetherFromAnyStart) {
     ASSERT_TRUE(project(model, {}, cold).converged());
     State before = rest_state(model);
     for (std::size_t c = 0; c < before.multipliers.size(); ++c) before.multipliers[c] = 1.3 * cold.multipliers[c];
-    for (double& force : before.contact_forces) force = 2 * size;
+    for (double& force : before.obstacle_forces) force = 2 * size;
     StepReport report;
     VolumeProjection(model, ProjectionRule{}).apply(before, duration_s, {}, warm, report);
     ASSERT_TRUE(report.converged()) << report.reason();
     const double apart = largest_distance(warm.positions, cold.positions);
     for (const State* state : {&cold, &warm}) {
       EXPECT_LE(worst_error(model, state->positions), 1e-9);
-      for (std::size_t k = 0; k < state->contact_forces.size(); ++k) {
-        const double gap = Contacts(model).gap(k, state->positions).value;
+      for (std::size_t k = 0; k < state->obstacle_forces.size(); ++k) {
+        const double gap = ObstacleContacts(model).gap(k, state->positions).value;
         EXPECT_GE(gap, -1e-7);
-        EXPECT_GE(state->contact_forces[k], 0);
-        if (state->contact_forces[k] > 0) {
+        EXPECT_GE(state->obstacle_forces[k], 0);
+        if (state->obstacle_forces[k] > 0) {
           EXPECT_LE(gap, 1e-7) << "a force at a distance";
         }
       }

@@ -192,7 +192,7 @@ TEST(ContactCycle, Ends) {
   const StepReport report = stepper.advance(rest_state(model), 1, true, end);
   ASSERT_TRUE(report.converged()) << report.reason();
   Vec3 z, force;
-  for (int k = 0; k < 3; ++k) z[k] = end.positions[nodes[k].index()].z() - floor, force[k] = end.contact_forces[k];
+  for (int k = 0; k < 3; ++k) z[k] = end.positions[nodes[k].index()].z() - floor, force[k] = end.obstacle_forces[k];
   EXPECT_LE((stiffness * z - load - force).norm(), 1e-7);
   for (int k = 0; k < 3; ++k) {
     EXPECT_GE(z[k], -1e-8);

@@ -96,11 +96,11 @@ TEST(NewtonStepper, PressurisedSphereRestsOnItsShell) {
   const State after = steps(solver, rest_state(model), 20, 10, &before);
   EXPECT_LE(largest(unbalanced_forces(model, before, after)), 1e-7 * force_size(model, before, after));
   double total = 0;
-  for (std::size_t k = 0; k < after.contact_forces.size(); ++k) {
+  for (std::size_t k = 0; k < after.obstacle_forces.size(); ++k) {
     const std::size_t n = model.obstacles.front()->nodes()[k].index();
-    EXPECT_GE(after.contact_forces[k], 0);
+    EXPECT_GE(after.obstacle_forces[k], 0);
     EXPECT_GE(model.obstacles.front()->gap(after.positions[n]).value, -1e-8);
-    total += after.contact_forces[k];
+    total += after.obstacle_forces[k];
   }
   double area = 0;
   for (const Facet& facet : model.tissue.apical_facets) {
@@ -126,16 +126,16 @@ TEST(NewtonStepper, NodesAreEitherOnTheShellOrFreeOfIt) {
     EXPECT_LE(largest(unbalanced_forces(model, before, state)), 1e-7 * force_size(model, before, state));
     EXPECT_LE(worst_volume_error(model, state), 1e-10);
     on_shell = off_shell = 0;
-    for (std::size_t i = 0; i < state.contact_forces.size(); ++i) {
+    for (std::size_t i = 0; i < state.obstacle_forces.size(); ++i) {
       const double gap =
           model.obstacles.front()->gap(state.positions[model.obstacles.front()->nodes()[i].index()]).value;
-      EXPECT_GE(state.contact_forces[i], 0);
+      EXPECT_GE(state.obstacle_forces[i], 0);
       EXPECT_GE(gap, -1e-8);
-      EXPECT_EQ(state.in_contact[i] != 0, gap <= 1e-8 && state.in_contact[i] != 0);
-      if (state.contact_forces[i] > 0) {
+      EXPECT_EQ(state.on_obstacle[i] != 0, gap <= 1e-8 && state.on_obstacle[i] != 0);
+      if (state.obstacle_forces[i] > 0) {
         EXPECT_LE(gap, 1e-8) << "a force at a distance";
       }
-      (state.in_contact[i] ? on_shell : off_shell) += 1;
+      (state.on_obstacle[i] ? on_shell : off_shell) += 1;
     }
   }
   std::printf("furrowing sphere: %d nodes on the shell, %d off it\n", on_shell, off_shell);
@@ -177,7 +177,7 @@ TEST(NewtonStepper, OneAndTwoThreadsGiveTheSameBits) {
   }
   EXPECT_EQ(ends[0].positions, ends[1].positions);
   EXPECT_EQ(ends[0].multipliers, ends[1].multipliers);
-  EXPECT_EQ(ends[0].contact_forces, ends[1].contact_forces);
+  EXPECT_EQ(ends[0].obstacle_forces, ends[1].obstacle_forces);
 }
 
 // What a resumed run rests on.
