@@ -87,8 +87,8 @@ struct Measured {
                      vec = sizeof(Vec3);
     double* out = numbers(std::span(result));
     const double* d = numbers(scene.direction);
-    const CorotationalStep e = elasticity.kernel_step(step), w = elasticity.kernel_step(warped);
-    const VolumeStep v = volumes.kernel_step(scene.positions, pressures);
+    const CorotationalArrays e = elasticity.kernel_arrays(step), w = elasticity.kernel_arrays(warped);
+    const VolumeArrays v = volumes.kernel_arrays(scene.positions, pressures);
     return {
         {"element forces", [this] { elasticity.add_forces(step, result); },
          [=](std::size_t n) { counted::corotational().add_forces(e, 0, n, out); }, corotational, 3 * vec},

@@ -28,13 +28,13 @@ Step motionless(const State& state, std::span<const Vec3> velocities) {
   return step;
 }
 
-EnergyFlow viscous_energy_flow(const Law& law, const MadeStep& made) {
+EnergyFlow viscous_energy_flow(const Law& law, const CompletedStep& made) {
   const double now = law.energy(made.end);
   return {.stored = now - law.energy(made.begin), .dissipated = 2 * (law.energy(made.whole) - now)};
 }
 
 std::vector<EnergyFlow> energy_flows(const Model& model, const State& before, const State& after) {
-  MadeStep made{motionless(before, before.velocities), motionless(after, after.velocities), {}};
+  CompletedStep made{motionless(before, before.velocities), motionless(after, after.velocities), {}};
   made.whole.positions = after.positions;
   made.whole.previous_positions = before.positions;
   made.whole.previous_velocities = before.velocities;

@@ -52,7 +52,7 @@ struct Step {
 };
 
 /// Completed step, for its energies (docs/theory/energy.md).
-struct MadeStep {
+struct CompletedStep {
   Step begin, end;  // motionless: positions and internal states before and after the step
   Step whole;       // from one to the other at mean rates, with the internal states before; programs read midway
 };
@@ -120,7 +120,7 @@ class Law {
 
   /// Return the energy flows of a step. The default is for laws that store all energy; active, dissipative or relaxing
   /// laws override it (docs/theory/energy.md).
-  [[nodiscard]] virtual EnergyFlow energy_flow(const MadeStep& made) const {
+  [[nodiscard]] virtual EnergyFlow energy_flow(const CompletedStep& made) const {
     return {.stored = energy(made.end) - energy(made.begin)};
   }
 

@@ -21,7 +21,7 @@ class NodeLaw : public Law {
     for_nodes(step, [&](std::size_t n, const auto& r) { sum += 0.5 * product(r, self().moved(step, n)); });
     return sum;
   }
-  [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const final {
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& made) const final {
     return Self::dissipates ? viscous_energy_flow(*this, made) : Law::energy_flow(made);
   }
   void add_forces(const Step& step, std::span<Vec3> forces) const final {
@@ -130,7 +130,7 @@ class FacePressure final : public Law {
     for (std::size_t n = 0; n < loads_.size(); ++n) work += loads_[n].dot(step.positions[n]);
     return -program_.at(step.end_time_s) * work;
   }
-  [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override {
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& made) const override {
     double work = 0;
     for (std::size_t n = 0; n < loads_.size(); ++n)
       work += loads_[n].dot(made.whole.positions[n] - made.whole.previous_positions[n]);

@@ -193,7 +193,7 @@ double Contraction::energy(const Step& step) const {
   return sum;
 }
 
-EnergyFlow Contraction::energy_flow(const MadeStep& made) const {
+EnergyFlow Contraction::energy_flow(const CompletedStep& made) const {
   const Step& step = made.whole;
   EnergyFlow flow;
   for (std::size_t k = 0; k < springs_.size(); ++k) {

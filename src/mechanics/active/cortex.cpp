@@ -162,7 +162,7 @@ Cortex::Response Cortex::respond(std::size_t f, double area, const Step& step, b
   return sum;
 }
 
-EnergyFlow Cortex::energy_flow(const MadeStep& made) const {
+EnergyFlow Cortex::energy_flow(const CompletedStep& made) const {
   const std::vector<double> before = areas(made.begin.positions), after = areas(made.end.positions);
   std::vector<EnergyFlow> flows_of(faces_.size());
   chunks_.for_elements([&](std::size_t f) {
@@ -191,14 +191,14 @@ EnergyFlow Cortex::energy_flow(const MadeStep& made) const {
 
 std::vector<double> Cortex::areas(std::span<const Vec3> positions) const {
   std::vector<double> areas(places());
-  const FaceStep at{batches_.data(), faces_.size(), numbers(positions), nullptr, nullptr, false};
+  const FaceArrays at{batches_.data(), faces_.size(), numbers(positions), nullptr, nullptr, false};
   chunks_.for_batches(
       [&](std::size_t first, std::size_t last) { kernels().write_areas(at, first, last, areas.data()); });
   areas.resize(faces_.size());
   return areas;
 }
 
-Cortex::Pull Cortex::kernel_step(const Step& step) const {
+Cortex::Pull Cortex::kernel_arrays(const Step& step) const {
   Pull pull{{}, areas(step.positions), std::vector<double>(places(), 0.0)};
   pull.of_tensions.resize(places(), 0.0);
   chunks_.for_elements([&](std::size_t f) {
@@ -206,13 +206,13 @@ Cortex::Pull Cortex::kernel_step(const Step& step) const {
     pull.of_tensions[f] = response.tension;
     pull.of_slopes[f] = response.slope;
   });
-  static_cast<FaceStep&>(pull) = {batches_.data(),         faces_.size(),         numbers(step.positions),
-                                  pull.of_tensions.data(), pull.of_slopes.data(), step.semidefinite_tangent};
+  static_cast<FaceArrays&>(pull) = {batches_.data(),         faces_.size(),         numbers(step.positions),
+                                    pull.of_tensions.data(), pull.of_slopes.data(), step.semidefinite_tangent};
   return pull;
 }
 
 std::vector<double> Cortex::tensions(const Step& step) const {
-  std::vector<double> tensions = kernel_step(step).of_tensions;
+  std::vector<double> tensions = kernel_arrays(step).of_tensions;
   tensions.resize(faces_.size());
   return tensions;
 }

@@ -55,7 +55,7 @@ CellVolumes CellVolumes::grown(const Tissue& tissue) const {
   return after;
 }
 
-VolumeStep CellVolumes::kernel_step(std::span<const Vec3> positions, std::span<const double> pressures) const {
+VolumeArrays CellVolumes::kernel_arrays(std::span<const Vec3> positions, std::span<const double> pressures) const {
   return {.batches = batches_.data(),
           .elements = elements_.size(),
           .positions = numbers(positions),
@@ -72,7 +72,7 @@ std::vector<double> CellVolumes::volumes(std::span<const Vec3> positions) const 
 
 void CellVolumes::values(std::span<const Vec3> positions, std::span<double> of_cells) const {
   std::fill(of_cells.begin(), of_cells.end(), 0.0);
-  const VolumeStep at = kernel_step(positions, {});
+  const VolumeArrays at = kernel_arrays(positions, {});
   chunks_.for_batches(
       [&](std::size_t first, std::size_t last) { kernels_->add_volumes(at, first, last, of_cells.data()); });
 }
@@ -113,21 +113,21 @@ std::vector<double> CellVolumes::multipliers_after_division(std::span<const doub
 }
 
 void CellVolumes::gradients(std::span<const Vec3> positions, std::span<Vec3> of_elements) const {
-  const VolumeStep at = kernel_step(positions, {});
+  const VolumeArrays at = kernel_arrays(positions, {});
   chunks_.for_batches(
       [&](std::size_t first, std::size_t last) { kernels_->write_gradients(at, first, last, numbers(of_elements)); });
 }
 
 void CellVolumes::add_forces(std::span<const Vec3> positions, std::span<const double> pressures,
                              std::span<Vec3> forces) const {
-  const VolumeStep at = kernel_step(positions, pressures);
+  const VolumeArrays at = kernel_arrays(positions, pressures);
   chunks_.for_batches(
       [&](std::size_t first, std::size_t last) { kernels_->add_forces(at, first, last, numbers(forces)); });
 }
 
 void CellVolumes::add_tangent_product(std::span<const Vec3> positions, std::span<const double> pressures,
                                       std::span<const Vec3> direction, std::span<Vec3> product) const {
-  const VolumeStep at = kernel_step(positions, pressures);
+  const VolumeArrays at = kernel_arrays(positions, pressures);
   chunks_.for_batches([&](std::size_t first, std::size_t last) {
     kernels_->add_product(at, first, last, numbers(direction), numbers(product));
   });
@@ -164,7 +164,7 @@ Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are
                        const std::vector<double>& factors, Kernels kernels)
     : Dilatation(tissue, in_all_elements(tissue, bulk_modulus, factors), cells_are_exact, kernels) {}
 
-VolumeStep Dilatation::kernel_step(const Step& step) const {
+VolumeArrays Dilatation::kernel_arrays(const Step& step) const {
   return {.batches = batches_.data(),
           .elements = elements_.size(),
           .positions = numbers(step.positions),

@@ -64,7 +64,7 @@ class CellVolumes final : public Constraint {
                                                                const Division& division) const override;
 
   /// Return the input of the kernels.
-  [[nodiscard]] VolumeStep kernel_step(std::span<const Vec3> positions, std::span<const double> pressures) const;
+  [[nodiscard]] VolumeArrays kernel_arrays(std::span<const Vec3> positions, std::span<const double> pressures) const;
 
  private:
   void take_targets(const Tissue& tissue);
@@ -105,7 +105,7 @@ class Dilatation final : public BatchLaw<Dilatation, 8> {
   static constexpr std::array tables = {&generic::volume_kernels, &avx2::volume_kernels, &avx512::volume_kernels};
   void fit(const Tissue& tissue, std::size_t place);
   void take_target_volumes(const Tissue& tissue);
-  [[nodiscard]] VolumeStep kernel_step(const Step& step) const;
+  [[nodiscard]] VolumeArrays kernel_arrays(const Step& step) const;
 
   OfElements<double> bulk_moduli_;  // kPa
   bool cells_are_exact_;

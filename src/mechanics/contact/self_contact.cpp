@@ -353,7 +353,7 @@ void SelfContact::add_push(const Pair& pair, const Vec3& push, std::span<Vec3> f
   add(pair.q, -1);
 }
 
-EnergyFlow SelfContact::energy_flow(const MadeStep& made) const {
+EnergyFlow SelfContact::energy_flow(const CompletedStep& made) const {
   // Pairs are detected again at the end of the step; energy stored by old pairs beyond the new ones is dissipated.
   Step with_old_pairs = made.end;
   with_old_pairs.internal = made.begin.internal;

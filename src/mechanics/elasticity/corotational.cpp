@@ -72,7 +72,7 @@ void Corotational::fit(const Tissue& tissue, std::size_t place) {
   put_stiffness(hourglass_stiffness(rest, viscous_moduli(shear_viscosity_), modes), lane, viscous.stiffness);
 }
 
-CorotationalStep Corotational::kernel_step(const Step& step) const {
+CorotationalArrays Corotational::kernel_arrays(const Step& step) const {
   return {.batches = batches_.data(),
           .viscous_batches = viscous_batches_.empty() ? nullptr : viscous_batches_.data(),
           .elements = elements_.size(),
@@ -84,12 +84,12 @@ CorotationalStep Corotational::kernel_step(const Step& step) const {
           .semidefinite_tangent = step.semidefinite_tangent};
 }
 
-EnergyFlow Corotational::energy_flow(const MadeStep& made) const {
+EnergyFlow Corotational::energy_flow(const CompletedStep& made) const {
   return viscous_batches_.empty() ? Law::energy_flow(made) : viscous_energy_flow(*this, made);
 }
 
 double Corotational::energy(const Step& step) const {
-  const CorotationalStep of_kernels = kernel_step(step);
+  const CorotationalArrays of_kernels = kernel_arrays(step);
   std::vector<double> energies(places());
   chunks_.for_batches(
       [&](std::size_t first, std::size_t last) { kernels().write_energies(of_kernels, first, last, energies.data()); });

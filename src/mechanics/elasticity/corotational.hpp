@@ -30,14 +30,14 @@ class Corotational final : public BatchLaw<Corotational, 8> {
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
   [[nodiscard]] double energy(const Step& step) const override;
-  [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override;
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& made) const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
 
   [[nodiscard]] bool overbends() const override { return true; }
 
   /// Return the input of the kernels.
-  [[nodiscard]] CorotationalStep kernel_step(const Step& step) const;
+  [[nodiscard]] CorotationalArrays kernel_arrays(const Step& step) const;
 
  private:
   friend BatchLaw;

@@ -106,7 +106,7 @@ NeoHookean::Memory NeoHookean::memory(std::span<const double> internal) const {
   return {{first, batches_.size()}, {first + batches_.size(), batches_.size()}};
 }
 
-NeoHookeanStep NeoHookean::kernel_step(const Step& step) const {
+NeoHookeanArrays NeoHookean::kernel_arrays(const Step& step) const {
   const auto [now, earlier] = memory(step.internal);
   return {.batches = batches_.data(),
           .flows = flows_ ? flow_batches_.data() : nullptr,
@@ -152,7 +152,7 @@ double NeoHookean::energy(const Step& step) const {
 }
 
 // Work not stored in the relaxed rest shapes is dissipated.
-EnergyFlow NeoHookean::energy_flow(const MadeStep& made) const {
+EnergyFlow NeoHookean::energy_flow(const CompletedStep& made) const {
   EnergyFlow flow = Law::energy_flow(made);
   if (!flows_) return flow;
   Vectors mean(made.end.positions.size(), Vec3::Zero());
@@ -177,7 +177,7 @@ std::vector<double> NeoHookean::next_internal(const Step& step) const {
   const std::size_t size = batches_.size() * numbers_a_batch;
   std::vector<double> internal(2 * size);
   std::copy_n(step.internal.begin(), size, internal.begin() + static_cast<std::ptrdiff_t>(size));
-  const NeoHookeanStep at = kernel_step(step);
+  const NeoHookeanArrays at = kernel_arrays(step);
   chunks_.for_batches([&](std::size_t first, std::size_t last) {
     kernels().write_flowed(at, first, last, batches_of(internal).data());
   });

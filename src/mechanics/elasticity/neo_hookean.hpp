@@ -32,7 +32,7 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8> {
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
   [[nodiscard]] double energy(const Step& step) const override;
-  [[nodiscard]] EnergyFlow energy_flow(const MadeStep& made) const override;
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& made) const override;
 
   /// Return, if cells relax, C_p at the beginning of this step, then of the previous step, in the layout of kernels.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
@@ -59,7 +59,7 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8> {
   };
   [[nodiscard]] Memory memory(std::span<const double> internal) const;
   [[nodiscard]] Mat3 flowed_before(std::size_t element, int gauss_point, const Step& step) const;
-  [[nodiscard]] NeoHookeanStep kernel_step(const Step& step) const;
+  [[nodiscard]] NeoHookeanArrays kernel_arrays(const Step& step) const;
 
   OfElements<NeoHookeanMaterial> materials_;
   bool flows_;  // whether any element relaxes

@@ -121,7 +121,7 @@ double TurningElements::energy(const Step& step) const {
   return chunks_.sum_over_elements([&](std::size_t e) { return frame(e, step).energy; });
 }
 
-EnergyFlow TurningElements::energy_flow(const MadeStep& made) const {
+EnergyFlow TurningElements::energy_flow(const CompletedStep& made) const {
   return viscous_ ? viscous_energy_flow(*this, made) : Law::energy_flow(made);
 }
 

@@ -13,9 +13,9 @@
 
 namespace plica {
 
-/// Law of elements of that many corners. `Self` has `tables` (its kernels by instruction set), kernel_step(step) (their
-/// input) and, if rest shapes grow, fit(tissue, place): element data from the rest shape. There are places for whole
-/// batches, since kernels calculate in them; those after the last element repeat it.
+/// Law of elements of that many corners. `Self` has `tables` (its kernels by instruction set), kernel_arrays(step)
+/// (their input) and, if rest shapes grow, fit(tissue, place): element data from the rest shape. There are places for
+/// whole batches, since kernels calculate in them; those after the last element repeat it.
 template <class Self, int corners>
 class BatchLaw : public Law {
  public:
@@ -24,18 +24,18 @@ class BatchLaw : public Law {
 
   [[nodiscard]] std::unique_ptr<Law> clone() const final { return std::make_unique<Self>(self()); }
   void add_forces(const Step& step, std::span<Vec3> forces) const final {
-    const auto& at = self().kernel_step(step);
+    const auto& at = self().kernel_arrays(step);
     chunks_.for_batches(
         [&](std::size_t first, std::size_t last) { kernels().add_forces(at, first, last, numbers(forces)); });
   }
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const final {
-    const auto& at = self().kernel_step(step);
+    const auto& at = self().kernel_arrays(step);
     chunks_.for_batches([&](std::size_t first, std::size_t last) {
       kernels().add_product(at, first, last, numbers(direction), numbers(product));
     });
   }
   void add_tangent(const Step& step, TangentSink& tangent) const override {
-    const auto& at = self().kernel_step(step);
+    const auto& at = self().kernel_arrays(step);
     const auto add_batch = [&](std::size_t batch) {
       TangentBlocks<corners> of_batch;
       kernels().write_blocks(at, batch, of_batch);

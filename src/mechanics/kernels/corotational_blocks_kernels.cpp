@@ -32,11 +32,11 @@ struct Turned {
   Vec h[4], q[4];
 };
 
-inline Turned turned(const Elements& e, const CorotationalStep& step, const Deformation& now) {
+inline Turned turned(const Elements& e, const CorotationalArrays& arrays, const Deformation& now) {
   Hourglass q;
   multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
   Sym T = e.shear() * deviator(now.S);
-  if (e.viscous) add_viscous(e, step, now, T, q);
+  if (e.viscous) add_viscous(e, arrays, now, T, q);
   const Mat back = transpose(now.R);
   const auto turn = [&](const Sym& a) { return upper_part(now.R * (full(a) * back)); };
   Turned result{turn(now.S), turn(T), {}, {}, {}, {}};
@@ -67,9 +67,9 @@ inline Mat half_turning_stiffness(const Turned& x, Lanes shear, const Mat (&H)[4
   return G * (full(symmetric_part(C)) * (broadcast(0.5) * G));
 }
 
-[[gnu::flatten]] void write_lanes(const Elements& e, const CorotationalStep& step, HexahedronBlocks& blocks) {
-  const bool exact = !step.semidefinite_tangent;
-  const Deformation now = deformation(e, step.positions);
+[[gnu::flatten]] void write_lanes(const Elements& e, const CorotationalArrays& arrays, HexahedronBlocks& blocks) {
+  const bool exact = !arrays.semidefinite_tangent;
+  const Deformation now = deformation(e, arrays.positions);
   Mat H[4][4];
   turned_stiffness(e, now.R, H);
   const Lanes shear = e.viscous ? e.shear() + e.viscous_shear() : e.shear();
@@ -88,7 +88,7 @@ inline Mat half_turning_stiffness(const Turned& x, Lanes shear, const Mat (&H)[4
   Turned x{};
   Mat half{};
   if (exact) {
-    x = turned(e, step, now);
+    x = turned(e, arrays, now);
     half = half_turning_stiffness(x, shear, H);
   }
   Mat U[8];
@@ -120,10 +120,10 @@ inline Mat half_turning_stiffness(const Turned& x, Lanes shear, const Mat (&H)[4
 
 }  // namespace
 
-void write_blocks(const CorotationalStep& step, std::size_t batch, HexahedronBlocks& blocks) {
-  const ViscousBatch* viscous = step.viscous_batches ? step.viscous_batches + batch : nullptr;
+void write_blocks(const CorotationalArrays& arrays, std::size_t batch, HexahedronBlocks& blocks) {
+  const ViscousBatch* viscous = arrays.viscous_batches ? arrays.viscous_batches + batch : nullptr;
   for (int lane = 0; lane < batch_size; lane += width)
-    write_lanes({step.batches[batch], viscous, step.rate, lane}, step, blocks);
+    write_lanes({arrays.batches[batch], viscous, arrays.rate, lane}, arrays, blocks);
 }
 
 }  // namespace plica::PLICA_KERNELS

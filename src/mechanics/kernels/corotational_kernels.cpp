@@ -9,9 +9,10 @@ namespace {
 
 // Calls body(elements, lanes that count) for every register's worth of the batches.
 template <class Body>
-inline void for_elements(const CorotationalStep& step, std::size_t first, std::size_t last, const Body& body) {
-  for_registers(step.elements, first, last, [&](std::size_t b, int lane, int count) {
-    body(Elements{step.batches[b], step.viscous_batches ? step.viscous_batches + b : nullptr, step.rate, lane}, count);
+inline void for_elements(const CorotationalArrays& arrays, std::size_t first, std::size_t last, const Body& body) {
+  for_registers(arrays.elements, first, last, [&](std::size_t b, int lane, int count) {
+    body(Elements{arrays.batches[b], arrays.viscous_batches ? arrays.viscous_batches + b : nullptr, arrays.rate, lane},
+         count);
   });
 }
 
@@ -42,29 +43,30 @@ inline Lanes half_product(const Elements& e, const Batch& batch, const Sym& S, c
 }
 
 template <bool viscous>
-[[gnu::flatten]] void write_energies(const CorotationalStep& step, std::size_t first, std::size_t last,
+[[gnu::flatten]] void write_energies(const CorotationalArrays& arrays, std::size_t first, std::size_t last,
                                      double* energies) {
-  for_elements(step, first, last, [&](const Elements& e, int) {
-    const Deformation now = deformation(e, step.positions);
+  for_elements(arrays, first, last, [&](const Elements& e, int) {
+    const Deformation now = deformation(e, arrays.positions);
     Lanes energy = half_product(e, e.batch, now.S, now.h);
     if (viscous) {
-      const Strain change = strain(e, step, now);
+      const Strain change = strain(e, arrays, now);
       energy += e.rate * half_product(e, *e.viscous, change.S, change.h);
     }
-    store_loose(energy, energies + (&e.batch - step.batches) * batch_size + e.lane);
+    store_loose(energy, energies + (&e.batch - arrays.batches) * batch_size + e.lane);
   });
 }
 
 template <bool viscous>
-[[gnu::flatten]] void add_forces(const CorotationalStep& step, std::size_t first, std::size_t last, double* forces) {
-  for_elements(step, first, last, [&](const Elements& e, int count) {
-    const Deformation now = deformation(e, step.positions);
+[[gnu::flatten]] void add_forces(const CorotationalArrays& arrays, std::size_t first, std::size_t last,
+                                 double* forces) {
+  for_elements(arrays, first, last, [&](const Elements& e, int count) {
+    const Deformation now = deformation(e, arrays.positions);
     Hourglass q;
     multiply<1>(e.batch.stiffness, e.lane, {&now.h}, {&q});
     Sym T = e.shear() * deviator(now.S);
     Vec torque = cross(now.h, q);
     if (viscous) {
-      add_viscous(e, step, now, T, q);
+      add_viscous(e, arrays, now, T, q);
       torque = cross(now.h, q) + axial(full(now.S) * full(T));
     }
     const Vec t = now.G * torque;
@@ -78,11 +80,11 @@ template <bool viscous>
 
 // R K R^T: the frame does not turn.
 template <bool viscous>
-[[gnu::flatten]] void add_warped_product(const CorotationalStep& step, std::size_t first, std::size_t last,
+[[gnu::flatten]] void add_warped_product(const CorotationalArrays& arrays, std::size_t first, std::size_t last,
                                          const double* direction, double* product) {
-  for_elements(step, first, last, [&](const Elements& e, int count) {
+  for_elements(arrays, first, last, [&](const Elements& e, int count) {
     Vec m[7], d[7];
-    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    gather_modes(e.batch.nodes, e.lane, arrays.positions, m);
     gather_modes(e.batch.nodes, e.lane, direction, d);
     Frame frame;
     set_frame(gradient(e, m), frame);
@@ -105,10 +107,10 @@ template <bool viscous>
 }
 
 template <bool viscous>
-[[gnu::flatten]] void add_exact_product(const CorotationalStep& step, std::size_t first, std::size_t last,
+[[gnu::flatten]] void add_exact_product(const CorotationalArrays& arrays, std::size_t first, std::size_t last,
                                         const double* direction, double* product) {
-  for_elements(step, first, last, [&](const Elements& e, int count) {
-    const Deformation now = deformation(e, step.positions);
+  for_elements(arrays, first, last, [&](const Elements& e, int count) {
+    const Deformation now = deformation(e, arrays.positions);
     Vec d[7];
     gather_modes(e.batch.nodes, e.lane, direction, d);
     const Mat& R = now.R;
@@ -127,7 +129,7 @@ template <bool viscous>
     Sym T = e.shear() * deviator(S), dT = e.shear() * deviator(dS);
     Vec torque = cross(h, q), dtorque = cross(dh, q) + cross(h, dq);
     if (viscous) {
-      add_viscous(e, step, now, T, q);
+      add_viscous(e, arrays, now, T, q);
       Hourglass damped;
       multiply<1>(e.viscous->stiffness, e.lane, {&dh}, {&damped});
       for (int i = 0; i < 12; ++i) dq.at[i] += e.rate * damped.at[i];
@@ -148,20 +150,20 @@ template <bool viscous>
 }
 
 // One kernel without viscosity, one with: most elements have none, and it must not cost them anything.
-void write_energies(const CorotationalStep& step, std::size_t first, std::size_t last, double* energies) {
-  (step.viscous_batches ? write_energies<true> : write_energies<false>)(step, first, last, energies);
+void write_energies(const CorotationalArrays& arrays, std::size_t first, std::size_t last, double* energies) {
+  (arrays.viscous_batches ? write_energies<true> : write_energies<false>)(arrays, first, last, energies);
 }
 
-void add_forces(const CorotationalStep& step, std::size_t first, std::size_t last, double* forces) {
-  (step.viscous_batches ? add_forces<true> : add_forces<false>)(step, first, last, forces);
+void add_forces(const CorotationalArrays& arrays, std::size_t first, std::size_t last, double* forces) {
+  (arrays.viscous_batches ? add_forces<true> : add_forces<false>)(arrays, first, last, forces);
 }
 
-void add_product(const CorotationalStep& step, std::size_t first, std::size_t last, const double* direction,
+void add_product(const CorotationalArrays& arrays, std::size_t first, std::size_t last, const double* direction,
                  double* product) {
-  const auto add = step.semidefinite_tangent
-                       ? (step.viscous_batches ? add_warped_product<true> : add_warped_product<false>)
-                       : (step.viscous_batches ? add_exact_product<true> : add_exact_product<false>);
-  add(step, first, last, direction, product);
+  const auto add = arrays.semidefinite_tangent
+                       ? (arrays.viscous_batches ? add_warped_product<true> : add_warped_product<false>)
+                       : (arrays.viscous_batches ? add_exact_product<true> : add_exact_product<false>);
+  add(arrays, first, last, direction, product);
 }
 
 }  // namespace

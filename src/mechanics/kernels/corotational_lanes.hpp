@@ -22,7 +22,7 @@ struct Elements {
 };
 
 /// Write the tangent blocks of a batch (CorotationalKernels).
-void write_blocks(const CorotationalStep& step, std::size_t batch, HexahedronBlocks& blocks);
+void write_blocks(const CorotationalArrays& arrays, std::size_t batch, HexahedronBlocks& blocks);
 
 /// Four vectors, one per hourglass.
 struct Hourglass {
@@ -170,10 +170,10 @@ struct Strain {
   }
 };
 
-inline Strain strain(const Elements& e, const CorotationalStep& step, const Deformation& now) {
+inline Strain strain(const Elements& e, const CorotationalArrays& arrays, const Deformation& now) {
   Strain change{now.S, now.h};
-  change.add(-(1 + step.ahead), deformation(e, step.previous_positions));
-  if (step.ahead > 0) change.add(step.ahead, deformation(e, step.earlier_positions));
+  change.add(-(1 + arrays.ahead), deformation(e, arrays.previous_positions));
+  if (arrays.ahead > 0) change.add(arrays.ahead, deformation(e, arrays.earlier_positions));
   return change;
 }
 
@@ -185,8 +185,9 @@ inline Vec cross(const Hourglass& a, const Hourglass& b) {
 }
 
 /// Add the viscous part of T and q.
-inline void add_viscous(const Elements& e, const CorotationalStep& step, const Deformation& now, Sym& T, Hourglass& q) {
-  const Strain change = strain(e, step, now);
+inline void add_viscous(const Elements& e, const CorotationalArrays& arrays, const Deformation& now, Sym& T,
+                        Hourglass& q) {
+  const Strain change = strain(e, arrays, now);
   Hourglass viscous;
   multiply<1>(e.viscous->stiffness, e.lane, {&change.h}, {&viscous});
   for (int i = 0; i < 12; ++i) q.at[i] += e.rate * viscous.at[i];

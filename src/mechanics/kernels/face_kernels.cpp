@@ -57,9 +57,9 @@ struct Faces {
 };
 
 template <class Body>
-inline void for_faces(const FaceStep& step, std::size_t first, std::size_t last, const Body& body) {
-  for_registers(step.faces, first, last, [&](std::size_t b, int lane, int count) {
-    body(Faces{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane, count});
+inline void for_faces(const FaceArrays& arrays, std::size_t first, std::size_t last, const Body& body) {
+  for_registers(arrays.faces, first, last, [&](std::size_t b, int lane, int count) {
+    body(Faces{arrays.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane, count});
   });
 }
 
@@ -108,11 +108,11 @@ inline Lanes positive_part(Lanes value) {
   return value;
 }
 
-[[gnu::flatten]] void write_areas(const FaceStep& step, std::size_t first, std::size_t last, double* areas) {
+[[gnu::flatten]] void write_areas(const FaceArrays& arrays, std::size_t first, std::size_t last, double* areas) {
   for (std::size_t b = first; b < last; ++b)
     for (int lane = 0; lane < batch_size; lane += width) {
-      const Faces faces{step.batches[b], 0, lane, width};
-      const Slants x = faces.slants_of(step.positions);
+      const Faces faces{arrays.batches[b], 0, lane, width};
+      const Slants x = faces.slants_of(arrays.positions);
       Normal n[2][2];
       normals(x, faces.blunt(), n);
       const Lanes area = n[0][0].length + n[0][1].length + n[1][0].length + n[1][1].length;
@@ -120,13 +120,13 @@ inline Lanes positive_part(Lanes value) {
     }
 }
 
-[[gnu::flatten]] void add_forces(const FaceStep& step, std::size_t first, std::size_t last, double* forces) {
-  for_faces(step, first, last, [&](const Faces& faces) {
-    const Slants x = faces.slants_of(step.positions);
+[[gnu::flatten]] void add_forces(const FaceArrays& arrays, std::size_t first, std::size_t last, double* forces) {
+  for_faces(arrays, first, last, [&](const Faces& faces) {
+    const Slants x = faces.slants_of(arrays.positions);
     Normal n[2][2];
     normals(x, faces.blunt(), n);
     Slants g = area_gradient(x, n);
-    const Lanes pull = -load_loose(step.tensions + faces.first);
+    const Lanes pull = -load_loose(arrays.tensions + faces.first);
     for (int k = 0; k < 2; ++k) {
       g.a[k] = pull * g.a[k];
       g.b[k] = pull * g.b[k];
@@ -161,34 +161,34 @@ inline Slants product(const Slants& x, const Normal (&n)[2][2], const Slants& g,
   return result;
 }
 
-[[gnu::flatten]] void add_product(const FaceStep& step, std::size_t first, std::size_t last, const double* direction,
-                                  double* product_of) {
-  for_faces(step, first, last, [&](const Faces& faces) {
-    const Slants x = faces.slants_of(step.positions), d = faces.slants_of(direction);
+[[gnu::flatten]] void add_product(const FaceArrays& arrays, std::size_t first, std::size_t last,
+                                  const double* direction, double* product_of) {
+  for_faces(arrays, first, last, [&](const Faces& faces) {
+    const Slants x = faces.slants_of(arrays.positions), d = faces.slants_of(direction);
     Normal n[2][2];
     normals(x, faces.blunt(), n);
-    Lanes tension = load_loose(step.tensions + faces.first), slope = load_loose(step.slopes + faces.first);
-    if (step.semidefinite_tangent) tension = positive_part(tension), slope = positive_part(slope);
-    faces.add(product(x, n, area_gradient(x, n), d, tension, slope, step.semidefinite_tangent), product_of);
+    Lanes tension = load_loose(arrays.tensions + faces.first), slope = load_loose(arrays.slopes + faces.first);
+    if (arrays.semidefinite_tangent) tension = positive_part(tension), slope = positive_part(slope);
+    faces.add(product(x, n, area_gradient(x, n), d, tension, slope, arrays.semidefinite_tangent), product_of);
   });
 }
 
 // Column by column: the tangent times unit vectors at a corner.
-[[gnu::flatten]] void write_blocks(const FaceStep& step, std::size_t batch, TangentBlocks<4>& blocks) {
+[[gnu::flatten]] void write_blocks(const FaceArrays& arrays, std::size_t batch, TangentBlocks<4>& blocks) {
   for (int lane = 0; lane < batch_size; lane += width) {
-    const Faces faces{step.batches[batch], batch * batch_size + static_cast<std::size_t>(lane), lane, width};
-    const Slants x = faces.slants_of(step.positions);
+    const Faces faces{arrays.batches[batch], batch * batch_size + static_cast<std::size_t>(lane), lane, width};
+    const Slants x = faces.slants_of(arrays.positions);
     Normal n[2][2];
     normals(x, faces.blunt(), n);
     const Slants g = area_gradient(x, n);
-    Lanes tension = load_loose(step.tensions + faces.first), slope = load_loose(step.slopes + faces.first);
-    if (step.semidefinite_tangent) tension = positive_part(tension), slope = positive_part(slope);
+    Lanes tension = load_loose(arrays.tensions + faces.first), slope = load_loose(arrays.slopes + faces.first);
+    if (arrays.semidefinite_tangent) tension = positive_part(tension), slope = positive_part(slope);
     for (int j = 0; j < 4; ++j)
       for (int c = 0; c < 3; ++c) {
         Vec unit[4] = {};
         component(unit[j], c) = broadcast(1);
         Vec f[4];
-        to_corners(product(x, n, g, slants(unit), tension, slope, step.semidefinite_tangent), f);
+        to_corners(product(x, n, g, slants(unit), tension, slope, arrays.semidefinite_tangent), f);
         for (int i = j; i < 4; ++i)
           for (int r = 0; r < 3; ++r)
             store_loose(component(f[i], r), blocks.blocks[i * (i + 1) / 2 + j][3 * c + r] + lane);

@@ -16,9 +16,9 @@ struct Elements {
 };
 
 template <class Body>
-inline void for_elements(const NeoHookeanStep& step, std::size_t first, std::size_t last, const Body& body) {
-  for_registers(step.elements, first, last, [&](std::size_t b, int lane, int count) {
-    body(Elements{step.batches[b], step.flows ? step.flows + b : nullptr, b, lane}, count);
+inline void for_elements(const NeoHookeanArrays& arrays, std::size_t first, std::size_t last, const Body& body) {
+  for_registers(arrays.elements, first, last, [&](std::size_t b, int lane, int count) {
+    body(Elements{arrays.batches[b], arrays.flows ? arrays.flows + b : nullptr, b, lane}, count);
   });
 }
 
@@ -90,15 +90,15 @@ struct Flow {
   Mat frame;
   Lanes r;
 };
-inline Flow flow_at(const NeoHookeanStep& step, const Elements& e, int g) {
-  Sym before = load_symmetric(step.flowed[e.number].points[g][0], e.lane);
-  if (step.ahead > 0)
-    before = broadcast(1 + step.ahead) * before -
-             broadcast(step.ahead) * load_symmetric(step.flowed_earlier[e.number].points[g][0], e.lane);
+inline Flow flow_at(const NeoHookeanArrays& arrays, const Elements& e, int g) {
+  Sym before = load_symmetric(arrays.flowed[e.number].points[g][0], e.lane);
+  if (arrays.ahead > 0)
+    before = broadcast(1 + arrays.ahead) * before -
+             broadcast(arrays.ahead) * load_symmetric(arrays.flowed_earlier[e.number].points[g][0], e.lane);
   const auto frame = [&](int k) { return load(e.flow->frames[g][k] + e.lane); };
   return {before,
           {{frame(0), frame(1), frame(2)}, {frame(3), frame(4), frame(5)}, {frame(6), frame(7), frame(8)}},
-          step.rate_s * load(e.flow->rates + e.lane)};
+          arrays.rate_s * load(e.flow->rates + e.lane)};
 }
 
 // Data of a Gauss point: w, and B with what its change is made of, d = det(C_p + r C)^(1/3).
@@ -108,10 +108,10 @@ struct Rest {
   Lanes r_over_d;
 };
 template <bool flows>
-inline Rest rest_at(const NeoHookeanStep& step, const Elements& e, int g, const Mat& D) {
+inline Rest rest_at(const NeoHookeanArrays& arrays, const Elements& e, int g, const Mat& D) {
   const Lanes w = load(e.batch.weights[g] + e.lane);
   if constexpr (!flows) return {w, load_symmetric(e.batch.metrics[g][0], e.lane), Lanes{}};
-  const auto [before, D0, r] = flow_at(step, e, g);
+  const auto [before, D0, r] = flow_at(arrays, e, g);
   const Lanes J0 = dot(D0.x, cross(D0.y, D0.z));
   const Sym flowed = symmetric_product(D0, {before * D0.x, before * D0.y, before * D0.z}) + r * symmetric_product(D, D);
   const Lanes d = cube_root(determinant(flowed) / (J0 * J0));
@@ -137,14 +137,14 @@ inline Lanes missing_stiffness(const Mat& DB, const Mat& D) {
 }
 
 template <bool flows>
-[[gnu::flatten]] void add_forces(const NeoHookeanStep& step, std::size_t first, std::size_t last, double* forces) {
-  for_elements(step, first, last, [&](const Elements& e, int count) {
+[[gnu::flatten]] void add_forces(const NeoHookeanArrays& arrays, std::size_t first, std::size_t last, double* forces) {
+  for_elements(arrays, first, last, [&](const Elements& e, int count) {
     Vec m[7], sum[7] = {};
-    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    gather_modes(e.batch.nodes, e.lane, arrays.positions, m);
     for (int g = 0; g < 8; ++g) {
       const Place at = gauss_place(g);
       const Mat D = slope(at, m);
-      const Rest rest = rest_at<flows>(step, e, g, D);
+      const Rest rest = rest_at<flows>(arrays, e, g, D);
       add_to_modes(at, rest.w * (D * rest.B - transposed_inverse(D)), sum);
     }
     scatter_modes(e, count, broadcast(-0.125), sum, forces);
@@ -152,19 +152,19 @@ template <bool flows>
 }
 
 template <bool flows>
-[[gnu::flatten]] void add_product(const NeoHookeanStep& step, std::size_t first, std::size_t last,
+[[gnu::flatten]] void add_product(const NeoHookeanArrays& arrays, std::size_t first, std::size_t last,
                                   const double* direction, double* product) {
-  for_elements(step, first, last, [&](const Elements& e, int count) {
+  for_elements(arrays, first, last, [&](const Elements& e, int count) {
     Vec m[7], d[7], sum[7] = {};
-    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    gather_modes(e.batch.nodes, e.lane, arrays.positions, m);
     gather_modes(e.batch.nodes, e.lane, direction, d);
     for (int g = 0; g < 8; ++g) {
       const Place at = gauss_place(g);
       const Mat D = slope(at, m), dD = slope(at, d);
-      const Rest rest = rest_at<flows>(step, e, g, D);
+      const Rest rest = rest_at<flows>(arrays, e, g, D);
       const Mat back = transposed_inverse(D);
       Mat dH = dD * rest.B + back * transpose(turn_back(back, dD));
-      if (step.semidefinite_tangent) {
+      if (arrays.semidefinite_tangent) {
         const Vec turn =
             missing_stiffness(D * rest.B, D) * (cross(dD.x, back.x) + cross(dD.y, back.y) + cross(dD.z, back.z));
         dH = dH + Mat{cross(back.x, turn), cross(back.y, turn), cross(back.z, turn)};
@@ -185,17 +185,17 @@ template <bool flows>
 //   K_ij = w ((c_i . n_j) I + k_j k_i^T), and where the rest shape flows
 //   + w r/d (2/3 p_i p_j^T - p_j p_i^T - (c_i . n_j) D B D^T).
 template <bool flows>
-[[gnu::flatten]] void write_lanes(const NeoHookeanStep& step, const Elements& e, HexahedronBlocks& blocks) {
+[[gnu::flatten]] void write_lanes(const NeoHookeanArrays& arrays, const Elements& e, HexahedronBlocks& blocks) {
   Vec m[7];
-  gather_modes(e.batch.nodes, e.lane, step.positions, m);
+  gather_modes(e.batch.nodes, e.lane, arrays.positions, m);
   Mat K[36] = {};
   for (int g = 0; g < 8; ++g) {
     const Place at = gauss_place(g);
     const Mat D = slope(at, m);
-    const Rest rest = rest_at<flows>(step, e, g, D);
+    const Rest rest = rest_at<flows>(arrays, e, g, D);
     const Mat back = transposed_inverse(D);
-    const bool yields = flows && !step.semidefinite_tangent;
-    const Lanes own = rest.w, missing = step.semidefinite_tangent ? missing_stiffness(D * rest.B, D) : Lanes{};
+    const bool yields = flows && !arrays.semidefinite_tangent;
+    const Lanes own = rest.w, missing = arrays.semidefinite_tangent ? missing_stiffness(D * rest.B, D) : Lanes{};
     const Mat b = yields ? (own * rest.r_over_d) * (D * rest.B * transpose(D)) : Mat{};
     Vec c[8], k[8], n[8], p[8];
     for (int i = 0; i < 8; ++i) {
@@ -220,15 +220,15 @@ template <bool flows>
 }
 
 // All lanes of a batch, those that repeat its last element, too: kernels calculate there.
-[[gnu::flatten]] void write_flowed(const NeoHookeanStep& step, std::size_t first, std::size_t last,
+[[gnu::flatten]] void write_flowed(const NeoHookeanArrays& arrays, std::size_t first, std::size_t last,
                                    FlowedBatch* flowed) {
   for (std::size_t b = first; b < last; ++b)
     for (int lane = 0; lane < batch_size; lane += width) {
-      const Elements e{step.batches[b], step.flows + b, b, lane};
+      const Elements e{arrays.batches[b], arrays.flows + b, b, lane};
       Vec m[7];
-      gather_modes(e.batch.nodes, e.lane, step.positions, m);
+      gather_modes(e.batch.nodes, e.lane, arrays.positions, m);
       for (int g = 0; g < 8; ++g) {
-        const auto [before, D0, r] = flow_at(step, e, g);
+        const auto [before, D0, r] = flow_at(arrays, e, g);
         const Mat F = slope(gauss_place(g), m) * transpose(transposed_inverse(D0));
         const Sym sum = before + r * symmetric_product(F, F), next = 1.0 / cube_root(determinant(sum)) * sum;
         const Lanes values[6] = {next.xx, next.yy, next.zz, next.xy, next.yz, next.zx};
@@ -237,19 +237,19 @@ template <bool flows>
     }
 }
 
-void add_forces(const NeoHookeanStep& step, std::size_t first, std::size_t last, double* forces) {
-  (step.flows ? add_forces<true> : add_forces<false>)(step, first, last, forces);
+void add_forces(const NeoHookeanArrays& arrays, std::size_t first, std::size_t last, double* forces) {
+  (arrays.flows ? add_forces<true> : add_forces<false>)(arrays, first, last, forces);
 }
 
-void add_product(const NeoHookeanStep& step, std::size_t first, std::size_t last, const double* direction,
+void add_product(const NeoHookeanArrays& arrays, std::size_t first, std::size_t last, const double* direction,
                  double* product) {
-  (step.flows ? add_product<true> : add_product<false>)(step, first, last, direction, product);
+  (arrays.flows ? add_product<true> : add_product<false>)(arrays, first, last, direction, product);
 }
 
-void write_blocks(const NeoHookeanStep& step, std::size_t batch, HexahedronBlocks& blocks) {
-  const Elements e{step.batches[batch], step.flows ? step.flows + batch : nullptr, batch, 0};
+void write_blocks(const NeoHookeanArrays& arrays, std::size_t batch, HexahedronBlocks& blocks) {
+  const Elements e{arrays.batches[batch], arrays.flows ? arrays.flows + batch : nullptr, batch, 0};
   for (int lane = 0; lane < batch_size; lane += width)
-    (step.flows ? write_lanes<true> : write_lanes<false>)(step, {e.batch, e.flow, e.number, lane}, blocks);
+    (arrays.flows ? write_lanes<true> : write_lanes<false>)(arrays, {e.batch, e.flow, e.number, lane}, blocks);
 }
 
 }  // namespace

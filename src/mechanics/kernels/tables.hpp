@@ -16,14 +16,14 @@ struct alignas(64) TangentBlocks {
 using HexahedronBlocks = TangentBlocks<8>;
 
 /// Kernels that every law has.
-template <class Step, int corners>
+template <class Arrays, int corners>
 struct ElementKernels {
   /// Add forces, nN; not finite if the energy is not.
-  void (*add_forces)(const Step&, std::size_t first, std::size_t last, double* forces);
+  void (*add_forces)(const Arrays&, std::size_t first, std::size_t last, double* forces);
   /// Add tangent times direction.
-  void (*add_product)(const Step&, std::size_t first, std::size_t last, const double* direction, double* product);
+  void (*add_product)(const Arrays&, std::size_t first, std::size_t last, const double* direction, double* product);
   /// Write the tangent of one batch.
-  void (*write_blocks)(const Step&, std::size_t batch, TangentBlocks<corners>& blocks);
+  void (*write_blocks)(const Arrays&, std::size_t batch, TangentBlocks<corners>& blocks);
 };
 
 struct alignas(64) CorotationalBatch {
@@ -41,7 +41,7 @@ struct alignas(64) ViscousBatch {
 };
 
 /// Elements of a law and their positions.
-struct CorotationalStep {
+struct CorotationalArrays {
   const CorotationalBatch* batches;
   const ViscousBatch* viscous_batches;  // null: not viscous
   std::size_t elements;
@@ -54,9 +54,9 @@ struct CorotationalStep {
   bool semidefinite_tangent;
 };
 
-struct CorotationalKernels : ElementKernels<CorotationalStep, 8> {
+struct CorotationalKernels : ElementKernels<CorotationalArrays, 8> {
   /// Write energies, nN um; elements, padded to whole batches.
-  void (*write_energies)(const CorotationalStep&, std::size_t first, std::size_t last, double* energies);
+  void (*write_energies)(const CorotationalArrays&, std::size_t first, std::size_t last, double* energies);
 };
 
 /// Return the rotation nearest to F (matrices by columns): polar(), for inverted or very flat elements.
@@ -68,7 +68,7 @@ struct alignas(64) FaceBatch {
 };
 
 /// Faces under tension and their positions. Tensions and slopes: faces, padded to whole batches.
-struct FaceStep {
+struct FaceArrays {
   const FaceBatch* batches;
   std::size_t faces;
   const double* positions;  // um
@@ -80,9 +80,9 @@ struct FaceStep {
 };
 
 /// Forces: -T dA/dx; tangent: T d2A/dx2 + dT/dA dA/dx dA/dx^T.
-struct FaceKernels : ElementKernels<FaceStep, 4> {
+struct FaceKernels : ElementKernels<FaceArrays, 4> {
   /// Write areas, um^2, padded to whole batches: bilinear facets, 2 x 2 Gauss points, regularised near zero.
-  void (*write_areas)(const FaceStep&, std::size_t first, std::size_t last, double* areas);
+  void (*write_areas)(const FaceArrays&, std::size_t first, std::size_t last, double* areas);
 };
 
 /// Elements of NeoHookean. Symmetric matrices are xx yy zz xy yz zx; Gauss points are in the order of the corners.
@@ -104,7 +104,7 @@ struct FlowedBatch {
 };
 
 /// Elements of a law and their positions.
-struct NeoHookeanStep {
+struct NeoHookeanArrays {
   const NeoHookeanBatch* batches;
   const FlowBatch* flows;  // null: no relaxation
   std::size_t elements;
@@ -117,9 +117,9 @@ struct NeoHookeanStep {
   double rate_s;
 };
 
-struct NeoHookeanKernels : ElementKernels<NeoHookeanStep, 8> {
+struct NeoHookeanKernels : ElementKernels<NeoHookeanArrays, 8> {
   /// Write C_p at the end of the step.
-  void (*write_flowed)(const NeoHookeanStep&, std::size_t first, std::size_t last, FlowedBatch* flowed);
+  void (*write_flowed)(const NeoHookeanArrays&, std::size_t first, std::size_t last, FlowedBatch* flowed);
 };
 
 struct alignas(64) VolumeBatch {
@@ -130,7 +130,7 @@ struct alignas(64) VolumeBatch {
 
 /// Elements under pressure and their positions. The pressure is that of the cell, or of dilatation, kappa (1 - V/V0)
 /// with kappa of the element.
-struct VolumeStep {
+struct VolumeArrays {
   const VolumeBatch* batches;
   std::size_t elements;
   const double* positions;    // um
@@ -140,11 +140,11 @@ struct VolumeStep {
 };
 
 /// Forces: pressure dV/dx; tangent: - pressure d2V/dx2 + kappa/V0 dV/dx dV/dx^T, the latter of dilatation; no blocks.
-struct VolumeKernels : ElementKernels<VolumeStep, 8> {
+struct VolumeKernels : ElementKernels<VolumeArrays, 8> {
   /// Add element volumes to those of their cells, um^3.
-  void (*add_volumes)(const VolumeStep&, std::size_t first, std::size_t last, double* volumes);
+  void (*add_volumes)(const VolumeArrays&, std::size_t first, std::size_t last, double* volumes);
   /// Write dV/dx of every corner, x y z each, um^2.
-  void (*write_gradients)(const VolumeStep&, std::size_t first, std::size_t last, double* gradients);
+  void (*write_gradients)(const VolumeArrays&, std::size_t first, std::size_t last, double* gradients);
 };
 
 namespace generic {

@@ -16,9 +16,9 @@ struct Elements {
 };
 
 template <class Body>
-inline void for_elements(const VolumeStep& step, std::size_t first, std::size_t last, const Body& body) {
-  for_registers(step.elements, first, last, [&](std::size_t b, int lane, int count) {
-    body(Elements{step.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane, count});
+inline void for_elements(const VolumeArrays& arrays, std::size_t first, std::size_t last, const Body& body) {
+  for_registers(arrays.elements, first, last, [&](std::size_t b, int lane, int count) {
+    body(Elements{arrays.batches[b], b * batch_size + static_cast<std::size_t>(lane), lane, count});
   });
 }
 
@@ -29,9 +29,9 @@ inline Lanes of_owners(const double* values, const Elements& e) {
   return own;
 }
 
-inline Lanes pressure(const VolumeStep& step, const Elements& e, const Vec (&m)[7]) {
-  if (!step.pressures) return of_owners(step.bulk_moduli, e) * (1.0 - volume(m) / e.rest_volume());
-  return of_owners(step.pressures, e);
+inline Lanes pressure(const VolumeArrays& arrays, const Elements& e, const Vec (&m)[7]) {
+  if (!arrays.pressures) return of_owners(arrays.bulk_moduli, e) * (1.0 - volume(m) / e.rest_volume());
+  return of_owners(arrays.pressures, e);
 }
 
 inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
@@ -40,19 +40,20 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
   scatter(e.batch.nodes, e.lane, e.count, f, vectors);
 }
 
-[[gnu::flatten]] void add_volumes(const VolumeStep& step, std::size_t first, std::size_t last, double* volumes) {
-  for_elements(step, first, last, [&](const Elements& e) {
+[[gnu::flatten]] void add_volumes(const VolumeArrays& arrays, std::size_t first, std::size_t last, double* volumes) {
+  for_elements(arrays, first, last, [&](const Elements& e) {
     Vec m[7];
-    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    gather_modes(e.batch.nodes, e.lane, arrays.positions, m);
     const Lanes V = volume(m);
     for (int k = 0; k < e.count; ++k) volumes[e.batch.owners[e.lane + k]] += V[k];
   });
 }
 
-[[gnu::flatten]] void write_gradients(const VolumeStep& step, std::size_t first, std::size_t last, double* gradients) {
-  for_elements(step, first, last, [&](const Elements& e) {
+[[gnu::flatten]] void write_gradients(const VolumeArrays& arrays, std::size_t first, std::size_t last,
+                                      double* gradients) {
+  for_elements(arrays, first, last, [&](const Elements& e) {
     Vec m[7], g[7], f[8];
-    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    gather_modes(e.batch.nodes, e.lane, arrays.positions, m);
     volume_gradient(m, g);
     from_modes(g, f);
     for (int k = 0; k < e.count; ++k)
@@ -65,27 +66,27 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
   });
 }
 
-[[gnu::flatten]] void add_forces(const VolumeStep& step, std::size_t first, std::size_t last, double* forces) {
-  for_elements(step, first, last, [&](const Elements& e) {
+[[gnu::flatten]] void add_forces(const VolumeArrays& arrays, std::size_t first, std::size_t last, double* forces) {
+  for_elements(arrays, first, last, [&](const Elements& e) {
     Vec m[7], g[7];
-    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    gather_modes(e.batch.nodes, e.lane, arrays.positions, m);
     volume_gradient(m, g);
-    const Lanes p = pressure(step, e, m);
+    const Lanes p = pressure(arrays, e, m);
     for (Vec& v : g) v = p * v;
     add_modes(e, g, forces);
   });
 }
 
-[[gnu::flatten]] void add_product(const VolumeStep& step, std::size_t first, std::size_t last, const double* direction,
-                                  double* product) {
-  const bool dilatation = !step.pressures;
-  for_elements(step, first, last, [&](const Elements& e) {
+[[gnu::flatten]] void add_product(const VolumeArrays& arrays, std::size_t first, std::size_t last,
+                                  const double* direction, double* product) {
+  const bool dilatation = !arrays.pressures;
+  for_elements(arrays, first, last, [&](const Elements& e) {
     Vec m[7], d[7], result[7] = {};
-    gather_modes(e.batch.nodes, e.lane, step.positions, m);
+    gather_modes(e.batch.nodes, e.lane, arrays.positions, m);
     gather_modes(e.batch.nodes, e.lane, direction, d);
-    if (!dilatation || !step.semidefinite_tangent) {
+    if (!dilatation || !arrays.semidefinite_tangent) {
       volume_gradient_change(m, d, result);
-      const Lanes p = pressure(step, e, m);
+      const Lanes p = pressure(arrays, e, m);
       for (Vec& v : result) v = -p * v;
     }
     if (dilatation) {
@@ -93,7 +94,7 @@ inline void add_modes(const Elements& e, const Vec (&g)[7], double* vectors) {
       volume_gradient(m, g);
       Lanes rate = dot(g[0], d[0]);
       for (int j = 1; j < 6; ++j) rate += dot(g[j], d[j]);
-      const Lanes tension = of_owners(step.bulk_moduli, e) * rate / e.rest_volume();
+      const Lanes tension = of_owners(arrays.bulk_moduli, e) * rate / e.rest_volume();
       for (int j = 0; j < 6; ++j) result[j] = result[j] + tension * g[j];
     }
     add_modes(e, result, product);
