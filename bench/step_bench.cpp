@@ -4,7 +4,7 @@
 #include "mechanics/elasticity/corotational.hpp"
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
-#include "solver/linear/step_matrix.hpp"
+#include "solver/linear/system_matrix.hpp"
 #include "solver/step/newton_stepper.hpp"
 
 namespace plica {
@@ -44,7 +44,7 @@ BENCHMARK(tangent_product)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
 
 void assembly(benchmark::State& bench) {
   const Setting setting(static_cast<int>(bench.range(0)));
-  StepMatrix matrix(*setting.model);
+  SystemMatrix matrix(*setting.model);
   for (auto _ : bench) {
     matrix.set_zero();
     for (const auto& law : setting.model->laws) law->add_tangent(setting.step, matrix);
@@ -54,7 +54,7 @@ BENCHMARK(assembly)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
 
 void factorisation(benchmark::State& bench) {
   const Setting setting(static_cast<int>(bench.range(0)));
-  StepMatrix matrix(*setting.model);
+  SystemMatrix matrix(*setting.model);
   matrix.set_zero();
   for (const auto& law : setting.model->laws) law->add_tangent(setting.step, matrix);
   matrix.take_gradients(*setting.model, setting.state.positions);
@@ -75,7 +75,7 @@ struct FactorSetting : Setting {
     matrix.add_constraint_stiffness(*model, state.positions, weights);
     matrix.write_projected_blocks(std::vector<NodeFrame>(state.positions.size()), values);
   }
-  StepMatrix matrix;
+  SystemMatrix matrix;
   BlockCholesky factor;
   UninitialisedVector<float> values;
 };

@@ -4,7 +4,7 @@
 
 #include "scenario/load.hpp"
 #include "scenario/setup.hpp"
-#include "solver/linear/step_matrix.hpp"
+#include "solver/linear/system_matrix.hpp"
 
 namespace plica::multigrid_bench {
 namespace {
@@ -85,7 +85,7 @@ System make_system(const SystemSettings& settings) {
   const State state = rest_state(*model);
   Step step{state.positions, state.positions, state.velocities, settings.step_s, settings.step_s};
   step.semidefinite_tangent = true;
-  System system{.pattern = StepMatrix(*model).layout(),
+  System system{.pattern = SystemMatrix(*model).layout(),
                 .values = {},
                 .near_kernel = {},
                 .elements = model->tissue.elements.size()};

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/algebra/rows.hpp"
+#include "solver/algebra/sparse_pattern.hpp"
 
 namespace plica::multigrid_bench {
 

@@ -3,7 +3,7 @@
 
 #include "elements.hpp"
 #include "mesh.hpp"
-#include "solver/algebra/rows.hpp"
+#include "solver/algebra/sparse_pattern.hpp"
 
 namespace plica::reference {
 

@@ -250,7 +250,7 @@ SpeedHistory speed_history(std::span<const SpeedRow> rows) {
 namespace {
 
 using enum InSummary;
-using M = MeasuredStep;
+using M = ColumnInput;
 
 std::optional<ContactState> contact_of_step(const M& m) { return contact_state(m.model, m.state); }
 std::optional<Enclosed> enclosed_of_step(const M& m) { return enclosed(m.model, m.state); }

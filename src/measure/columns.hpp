@@ -24,10 +24,10 @@ struct Observation;
 /// What sets keep over a run, by the names of the sets that are measured.
 using KeptBySet = std::map<std::string_view, std::any>;
 
-/// Data shared by the columns of a step.
-class MeasuredStep {
+/// Input of the columns of results after a step, with values that they share.
+class ColumnInput {
  public:
-  MeasuredStep(const Model& of_model, const State& at_its_end, const AcceptedStep* accepted)
+  ColumnInput(const Model& of_model, const State& at_its_end, const AcceptedStep* accepted)
       : model(of_model), state(at_its_end), step(accepted) {}
 
   const Model& model;
@@ -42,7 +42,7 @@ class MeasuredStep {
   }
   /// Value that columns share, computed once per step; one function per type.
   template <class Value>
-  [[nodiscard]] const Value& once(Value (*compute)(const MeasuredStep&)) const {
+  [[nodiscard]] const Value& once(Value (*compute)(const ColumnInput&)) const {
     std::any& value = shared_[typeid(Value)];
     if (!value.has_value()) value = compute(*this);
     return std::any_cast<const Value&>(value);
@@ -56,7 +56,7 @@ class MeasuredStep {
 enum class InSummary { nothing, last, largest, least, sum, whole_run };
 
 struct Column {
-  using OfStep = std::function<std::optional<double>(const MeasuredStep&)>;
+  using OfStep = std::function<std::optional<double>(const ColumnInput&)>;
   using OfRun = std::function<std::optional<double>(std::span<const Observation> rows)>;
 
   std::string_view name;  // with its unit

@@ -256,7 +256,7 @@ std::optional<double> midline_waviness_um(const Tissue& tissue, const FurrowSite
 namespace {
 
 using enum InSummary;
-using M = MeasuredStep;
+using M = ColumnInput;
 
 const FurrowSites& sites_of(const M& m) { return m.of_run<FurrowSites>(); }
 

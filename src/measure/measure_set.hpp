@@ -39,7 +39,7 @@ inline std::any kept_if(bool fits) { return fits ? std::any(true) : std::any(); 
 /// Column of a function of the tissue, or the model, and positions.
 template <class Result, class Of>
 Column::OfStep of(Result (*value)(const Of&, std::span<const Vec3>)) {
-  return [=](const MeasuredStep& m) -> std::optional<double> {
+  return [=](const ColumnInput& m) -> std::optional<double> {
     if constexpr (std::is_same_v<Of, Model>)
       return value(m.model, m.state.positions);
     else
@@ -49,12 +49,12 @@ Column::OfStep of(Result (*value)(const Of&, std::span<const Vec3>)) {
 
 /// Column of a part of a value that columns share; none if the value is missing.
 template <class Value>
-Column::OfStep part_of(Value (*compute)(const MeasuredStep&), std::optional<double> Value::*part) {
-  return [=](const MeasuredStep& m) { return m.once(compute).*part; };
+Column::OfStep part_of(Value (*compute)(const ColumnInput&), std::optional<double> Value::*part) {
+  return [=](const ColumnInput& m) { return m.once(compute).*part; };
 }
 template <class Value, class Part>
-Column::OfStep part_of(std::optional<Value> (*compute)(const MeasuredStep&), Part Value::*part) {
-  return [=](const MeasuredStep& m) -> std::optional<double> {
+Column::OfStep part_of(std::optional<Value> (*compute)(const ColumnInput&), Part Value::*part) {
+  return [=](const ColumnInput& m) -> std::optional<double> {
     const std::optional<Value>& value = m.once(compute);
     if (!value) return std::nullopt;
     return (*value).*part;

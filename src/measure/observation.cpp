@@ -12,7 +12,7 @@ Observer::Observer(const Model& model, Watch watch) : watch_(std::move(watch)) {
 
 Observation Observer::observe(const Moment& moment, const AcceptedStep* step) const {
   Observation row;
-  MeasuredStep measured(moment.model, moment.state, step);
+  ColumnInput measured(moment.model, moment.state, step);
   for (const Column* column : columns_) {
     if (!column->of_step) continue;
     measured.kept = &watch_.sets.at(column->set);

@@ -11,7 +11,7 @@ namespace plica {
 namespace {
 
 using enum InSummary;
-using M = MeasuredStep;
+using M = ColumnInput;
 
 // Column of a number of the solver's report; 0 in the reference state.
 Column::OfStep reported(int StepReport::*number) {

@@ -302,7 +302,7 @@ TEST(DividedSheet, AssemblesTheTangentOfItsFreeNodes) {
   State state = moved(model, 0.5, random);
   for (int round = 0; round < 2; ++round) divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
   const Motion motion{state.positions, state.positions, state.velocities};
-  StepMatrix matrix(model);
+  SystemMatrix matrix(model);
   matrix.set_zero();
   for (const auto& law : model.laws) law->add_tangent(motion.step(), matrix);
   Vectors direction = random.vectors(model.tissue.node_count());

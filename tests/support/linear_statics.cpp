@@ -80,7 +80,7 @@ Vectors LinearStatics::solve() const {
   Eigen::VectorXd u = Eigen::VectorXd::Zero(size_);
   for (int i = 0; i < size_; ++i) u[i] = prescribed_[i].value_or(0);
   const Eigen::VectorXd right = loads_ - K * u;
-  Rows pattern;
+  SparsePattern pattern;
   std::vector<double> values, unknowns(size_, 0.0);
   for (int row = 0; row < size_; ++row) {  // K is symmetric: a row is a column
     for (Eigen::SparseMatrix<double>::InnerIterator k(K, row); k; ++k) {

@@ -57,7 +57,7 @@ Vectors unbalanced_forces(const Model& model, const State& before, const State& 
   return forces;
 }
 
-Vectors product_of(const StepMatrix& matrix, const Vectors& direction) {
+Vectors product_of(const SystemMatrix& matrix, const Vectors& direction) {
   Vectors sum(direction.size(), Vec3::Zero()), of_node(static_cast<std::size_t>(matrix.layout().nodes()));
   for (std::size_t node = 0; node < of_node.size(); ++node) {
     matrix.multiply(node, direction[node], of_node);

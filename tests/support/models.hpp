@@ -5,7 +5,7 @@
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/model.hpp"
 #include "mechanics/surroundings.hpp"
-#include "solver/linear/step_matrix.hpp"
+#include "solver/linear/system_matrix.hpp"
 #include "support/tissues.hpp"
 
 namespace plica::support {
@@ -28,7 +28,7 @@ Model furrowing_sphere();
 Vectors unbalanced_forces(const Model& model, const State& before, const State& after);
 
 /// A times a vector, column by column; zero on nodes that hang.
-Vectors product_of(const StepMatrix& matrix, const Vectors& direction);
+Vectors product_of(const SystemMatrix& matrix, const Vectors& direction);
 
 /// Largest force of a law alone at a step's end: what the balance is judged by.
 double force_size(const Model& model, const State& before, const State& after);

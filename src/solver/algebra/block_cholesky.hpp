@@ -18,7 +18,7 @@
 #include "core/uninitialised.hpp"
 #include "solver/algebra/linear_solver.hpp"
 #include "solver/algebra/panel_products.hpp"
-#include "solver/algebra/rows.hpp"
+#include "solver/algebra/sparse_pattern.hpp"
 
 namespace plica {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "solver/algebra/rows.hpp"
+#include "solver/algebra/sparse_pattern.hpp"
 
 namespace plica {
 
@@ -15,7 +15,7 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   /// Order the pattern on and below the diagonal (entries may be missing there); once per topology.
-  virtual void analyse(const Rows& lower) = 0;
+  virtual void analyse(const SparsePattern& lower) = 0;
   /// Factorise values in the order of the pattern, row by row. False if the matrix is singular or memory is
   /// insufficient.
   [[nodiscard]] virtual bool factorise(std::span<const double> values) = 0;

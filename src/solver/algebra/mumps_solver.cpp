@@ -37,7 +37,7 @@ class MumpsSolver final : public LinearSolver {
   MumpsSolver(const MumpsSolver&) = delete;
   MumpsSolver& operator=(const MumpsSolver&) = delete;
 
-  void analyse(const Rows& lower) override {
+  void analyse(const SparsePattern& lower) override {
     // Fortran counts from 1.
     order_ =
         elimination_order(lower);  // not that of Scotch, with which Debian's MUMPS comes: another from call to call

@@ -12,7 +12,7 @@
 #include "core/parallel.hpp"
 #include "solver/algebra/block_cholesky.hpp"
 #include "solver/linear/node_frame.hpp"
-#include "solver/linear/step_matrix.hpp"
+#include "solver/linear/system_matrix.hpp"
 
 namespace plica {
 
@@ -26,7 +26,7 @@ namespace plica {
 class ObstacleBorder {
  public:
   /// Start with a new factor of `matrix` (which must not change until the next call) with these frames and contacts.
-  void begin(const Model& model, const ObstacleContacts& contacts, const StepMatrix& matrix,
+  void begin(const Model& model, const ObstacleContacts& contacts, const SystemMatrix& matrix,
              std::vector<NodeFrame> frames, std::vector<char> on_obstacle, std::size_t most_changes) {
     model_ = &model;
     contacts_ = &contacts;
@@ -156,7 +156,7 @@ class ObstacleBorder {
 
   const Model* model_ = nullptr;
   const ObstacleContacts* contacts_ = nullptr;
-  const StepMatrix* matrix_ = nullptr;
+  const SystemMatrix* matrix_ = nullptr;
   std::vector<NodeFrame> frames_;
   std::vector<char> on_obstacle_;
   std::size_t most_changes_ = 0;

@@ -10,7 +10,7 @@
 #include "core/parallel.hpp"
 #include "solver/algebra/block_cholesky.hpp"
 #include "solver/linear/constraint_jacobian.hpp"
-#include "solver/linear/step_matrix.hpp"
+#include "solver/linear/system_matrix.hpp"
 
 namespace plica {
 
@@ -22,7 +22,7 @@ class ChequerboardFactor {
   ChequerboardFactor(const ConstraintJacobian& jacobian, std::size_t free_nodes)
       : places_(jacobian.sparse_rows(), {-1, 0}), compliances_(free_nodes, 0.0) {
     gather_blocks(jacobian);
-    pattern_ = {collect_rows(static_cast<int>(blocks_.size()), [&](int block, const auto& take) {
+    pattern_ = {collect_pattern(static_cast<int>(blocks_.size()), [&](int block, const auto& take) {
       for (const int row : blocks_[block]) {
         if (row < 0) continue;
         for (const auto& [node, value] : jacobian.of_row(row))
@@ -36,7 +36,7 @@ class ChequerboardFactor {
 
   /// Compute the factor with the diagonal of `matrix` (of A alone), without directions fixed by frames. False if a
   /// node has no stiffness.
-  [[nodiscard]] bool factorise(const ConstraintJacobian& jacobian, const StepMatrix& matrix,
+  [[nodiscard]] bool factorise(const ConstraintJacobian& jacobian, const SystemMatrix& matrix,
                                std::span<const NodeFrame> frames) {
     parallel_for(compliances_.size(), [&](std::size_t n) { compliances_[n] = 3 / matrix.block(n, n).trace(); });
     if (!std::ranges::all_of(compliances_, [](double c) { return c > 0; })) return false;

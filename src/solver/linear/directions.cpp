@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "solver/linear/border.hpp"
-#include "solver/linear/step_matrix.hpp"
+#include "solver/linear/system_matrix.hpp"
 
 namespace plica {
 namespace {
@@ -57,7 +57,7 @@ class DirectDirections final : public NewtonDirections {
   void prepare(const Step& step) {
     if (matrix_ && matrix_->serves(model_, step)) return;
     forget_factor();
-    matrix_ = std::make_unique<StepMatrix>(model_, step);
+    matrix_ = std::make_unique<SystemMatrix>(model_, step);
     linear_solver_ = make_direct_solver();
     linear_solver_->analyse(matrix_->pattern());
   }
@@ -89,7 +89,7 @@ class DirectDirections final : public NewtonDirections {
 
   const Model& model_;
   ObstacleContacts contacts_;
-  std::unique_ptr<StepMatrix> matrix_;  // for the last patterns of the laws
+  std::unique_ptr<SystemMatrix> matrix_;  // for the last patterns of the laws
   std::unique_ptr<LinearSolver> linear_solver_;
   DenseBorder dense_;
   std::vector<double> values_;

@@ -1,5 +1,5 @@
-// Newton directions by conjugate residuals with products of the laws: the system (linearised_step.hpp) is matrix-free;
-// only its preconditioner is assembled, and reused over steps.
+// Newton directions by conjugate residuals with products of the laws: the system (linearised_system.hpp) is
+// matrix-free; only its preconditioner is assembled, and reused over steps.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,7 +10,7 @@
 #include "solver/linear/border.hpp"
 #include "solver/linear/chequerboard_factor.hpp"
 #include "solver/linear/directions.hpp"
-#include "solver/linear/linearised_step.hpp"
+#include "solver/linear/linearised_system.hpp"
 
 namespace plica {
 namespace {
@@ -36,7 +36,7 @@ double regularisation(LinearMethod method, int parts) {
 class KeptPreconditioner {
  public:
   /// Make a preconditioner of `system`, for steps with the patterns of `step`.
-  KeptPreconditioner(const Model& model, const LinearisedStep& system, LinearMethod method, const Step& step)
+  KeptPreconditioner(const Model& model, const LinearisedSystem& system, LinearMethod method, const Step& step)
       : model_(model), system_(system), method_(method), matrix_(model, step) {
     if (method == LinearMethod::multigrid) {
       preconditioner_ = make_multigrid(matrix_.layout());
@@ -179,9 +179,9 @@ class KeptPreconditioner {
   }
 
   const Model& model_;
-  const LinearisedStep& system_;
+  const LinearisedSystem& system_;
   LinearMethod method_;  // cholesky or multigrid
-  StepMatrix matrix_;    // with its J, at the iterate of the inverse
+  SystemMatrix matrix_;  // with its J, at the iterate of the inverse
   std::unique_ptr<Preconditioner> preconditioner_;
   const BlockCholesky* factor_ = nullptr;  // the factor, if it is one, with its border
   ObstacleBorder contacts_;
@@ -310,7 +310,7 @@ class KrylovDirections final : public NewtonDirections {
   const Model& model_;
   std::function<bool()> stop_requested_;
   LinearMethod method_;  // cholesky or multigrid
-  LinearisedStep system_;
+  LinearisedSystem system_;
   std::unique_ptr<KeptPreconditioner> kept_;  // for the patterns at its computation
   bool is_made_ = false;
   int price_of_new_;             // cost of a new one, in iterations, including assembly

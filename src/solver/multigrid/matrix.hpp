@@ -13,7 +13,7 @@
 
 #include "core/parallel.hpp"
 #include "core/uninitialised.hpp"
-#include "solver/algebra/rows.hpp"
+#include "solver/algebra/sparse_pattern.hpp"
 
 namespace plica::multigrid {
 
@@ -76,7 +76,7 @@ class Matrix {
 
   [[nodiscard]] int nodes() const { return rows_.count(); }
   [[nodiscard]] std::size_t unknowns() const { return std::size_t{B} * static_cast<std::size_t>(nodes()); }
-  [[nodiscard]] const Rows& rows() const { return rows_; }
+  [[nodiscard]] const SparsePattern& rows() const { return rows_; }
   /// Return a block of rows().columns, by columns.
   [[nodiscard]] const float* block(int place) const { return &values_[std::size_t{B * B} * place]; }
   /// Return the inverse of the diagonal block of a node.
@@ -144,7 +144,7 @@ class Matrix {
     return definite;
   }
 
-  Rows rows_;
+  SparsePattern rows_;
   std::vector<int> sources_;  // rows_.columns: block of the pattern, or ~ of it if transposed
   UninitialisedVector<float> values_, inverses_;
 };

@@ -14,7 +14,7 @@
 namespace plica::multigrid {
 
 // Appends the nodes that can be reached from the first, by their distance.
-inline void walk(const Rows& neighbours, int first, std::vector<char>& seen, std::vector<int>& order) {
+inline void walk(const SparsePattern& neighbours, int first, std::vector<char>& seen, std::vector<int>& order) {
   std::size_t next = order.size();
   order.push_back(first);
   for (seen[first] = 1; next < order.size(); ++next)
@@ -28,7 +28,7 @@ inline void walk(const Rows& neighbours, int first, std::vector<char>& seen, std
 /// Return the place of each node, sorted by distance (in neighbours) from a node at one end of the mesh: rings about
 /// the axis of an embryo.
 inline std::vector<int> places_by_distance(const BlockPattern& pattern) {
-  const Rows neighbours = neighbours_of(pattern);
+  const SparsePattern neighbours = neighbours_of(pattern);
   std::vector<int> order, places(pattern.nodes());
   std::vector<char> seen(pattern.nodes(), 0);
   for (int node = 0; node < pattern.nodes(); ++node) {
@@ -46,7 +46,7 @@ inline std::vector<int> places_by_distance(const BlockPattern& pattern) {
 
 /// Return the bounds of consecutive groups of at least `least` rows (fewer in the last), such that all columns of the
 /// rows of a group lie in it or in the two adjacent groups. If neighbours are far apart, there are few groups.
-inline std::vector<int> groups_of_rows(const Rows& matrix, int least) {
+inline std::vector<int> groups_of_rows(const SparsePattern& matrix, int least) {
   std::vector<int> bounds{0};
   int row = 0, reach = 0;  // of the rows before it
   while (bounds.back() < matrix.count()) {

@@ -85,12 +85,12 @@ inline int most_frequent(std::span<const int> neighbours, const std::vector<int>
 struct Aggregates {
   int count = 0;
   std::vector<int> of_node;  // -1: isolated node, omitted on the coarser level
-  Rows members;              // nodes of each aggregate
+  SparsePattern members;     // nodes of each aggregate
 };
 
 /// Make disjoint neighbourhoods: a node with all its neighbours if none is taken yet; each remaining node joins the
 /// aggregate with most of its neighbours. 27 nodes in a lattice of hexahedra, 18 in a sheet of one layer.
-inline Aggregates make_aggregates(const Rows& matrix) {
+inline Aggregates make_aggregates(const SparsePattern& matrix) {
   Aggregates result;
   std::vector<int> first(matrix.count(), -1);
   for (int node = 0; node < matrix.count(); ++node) {
@@ -104,7 +104,7 @@ inline Aggregates make_aggregates(const Rows& matrix) {
   for (int node = 0; node < matrix.count(); ++node)
     if (first[node] == -1) result.of_node[node] = most_frequent(matrix.of(node), first);
 
-  Rows of_nodes;
+  SparsePattern of_nodes;
   for (const int aggregate : result.of_node) {
     if (aggregate != -1) of_nodes.columns.push_back(aggregate);
     of_nodes.starts.push_back(static_cast<int>(of_nodes.columns.size()));
@@ -120,13 +120,13 @@ inline Aggregates make_aggregates(const Rows& matrix) {
 template <int B>
 class Transfer {
  public:
-  explicit Transfer(const Rows& matrix)
+  explicit Transfer(const SparsePattern& matrix)
       : aggregates_(make_aggregates(matrix)),
-        rows_(collect_rows(matrix.count(),
-                           [&](int node, const auto& take) {
-                             for (const int n : matrix.of(node))
-                               if (aggregates_.of_node[n] != -1) take(aggregates_.of_node[n]);
-                           })),
+        rows_(collect_pattern(matrix.count(),
+                              [&](int node, const auto& take) {
+                                for (const int n : matrix.of(node))
+                                  if (aggregates_.of_node[n] != -1) take(aggregates_.of_node[n]);
+                              })),
         columns_(transpose(rows_, aggregates_.count)),
         values_(std::size_t{B * motions} * rows_.columns.size() + spare) {}
 
@@ -164,7 +164,7 @@ class Transfer {
   }
 
   [[nodiscard]] int coarse_nodes() const { return aggregates_.count; }
-  [[nodiscard]] const Rows& rows() const { return rows_; }
+  [[nodiscard]] const SparsePattern& rows() const { return rows_; }
   [[nodiscard]] const Transposed& columns() const { return columns_; }
   /// Return a block of rows().columns: B x 6, by rows.
   [[nodiscard]] const float* block(int place) const { return &values_[std::size_t{B * motions} * place]; }
@@ -223,7 +223,7 @@ class Transfer {
   }
 
   Aggregates aggregates_;
-  Rows rows_;
+  SparsePattern rows_;
   Transposed columns_;
   UninitialisedVector<float> values_;
 };
@@ -232,8 +232,8 @@ class Transfer {
 template <int B>
 class Galerkin {
  public:
-  Galerkin(const Rows& matrix, const Transfer<B>& transfer)
-      : product_(collect_rows(matrix.count(), [&](int node, const auto& take) {
+  Galerkin(const SparsePattern& matrix, const Transfer<B>& transfer)
+      : product_(collect_pattern(matrix.count(), [&](int node, const auto& take) {
           const auto own = transfer.rows().of(node);
           if (own.empty()) return;
           for (const int n : matrix.of(node))
@@ -241,7 +241,7 @@ class Galerkin {
               if (column <= own.back()) take(column);
         })) {
     const auto& columns = transfer.columns();
-    Rows rows = collect_rows(transfer.coarse_nodes(), [&](int row, const auto& take) {
+    SparsePattern rows = collect_pattern(transfer.coarse_nodes(), [&](int row, const auto& take) {
       for (int at = columns.starts[row]; at < columns.starts[row + 1]; ++at)
         for (const int column : product_.of(columns.rows[at]))
           if (column <= row) take(column);
@@ -329,7 +329,7 @@ class Galerkin {
     return values;
   }
 
-  Rows product_;  // A P, as required for the lower triangle of P^T A P
+  SparsePattern product_;  // A P, as required for the lower triangle of P^T A P
   BlockPattern pattern_;
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 /// A random sparse quasi-definite matrix [A B^T; B -C], A and C positive definite, as pattern and values.
 struct System {
-  Rows pattern;
+  SparsePattern pattern;
   std::vector<double> values;
   Eigen::MatrixXd full;
 };
@@ -61,7 +61,7 @@ TEST(DirectSolver, SolvesRandomQuasiDefiniteSystems) {
 
 // A saddle point without the lower right block, as the step's system is; the zero diagonal is not in the pattern.
 TEST(DirectSolver, SolvesASaddlePointWithoutItsDiagonal) {
-  const Rows pattern{{0, 1, 2, 4}, {0, 1, 0, 1}};
+  const SparsePattern pattern{{0, 1, 2, 4}, {0, 1, 0, 1}};
   const auto solver = make_direct_solver();
   solver->analyse(pattern);
   ASSERT_TRUE(solver->factorise(std::vector<double>{2, 4, 1, 1}));
@@ -91,7 +91,7 @@ TEST(DirectSolver, NewValuesOnOnePatternGiveTheSameBitsAsAFreshSolver) {
 // Large enough for an orderer that works on several threads to do so.
 TEST(DirectSolver, OrdersAlikeEveryTime) {
   constexpr int side = 24, size = side * side * side;
-  Rows pattern;
+  SparsePattern pattern;
   std::vector<double> values;
   const auto entry = [&](int row, int column, double value) {
     pattern.columns.push_back(column);

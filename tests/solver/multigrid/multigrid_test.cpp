@@ -336,7 +336,7 @@ std::vector<int> shuffled(int count) {
   return names;
 }
 
-void expect_bounds(const Rows& rows, const std::vector<int>& bounds) {
+void expect_bounds(const SparsePattern& rows, const std::vector<int>& bounds) {
   ASSERT_EQ(bounds.front(), 0);
   ASSERT_EQ(bounds.back(), rows.count());
   const auto group_of = [&](int row) { return std::ranges::upper_bound(bounds, row) - bounds.begin() - 1; };

@@ -1,4 +1,4 @@
-// THE sparse pattern: columns of each row of a matrix. Used for node groups, factors and multigrid.
+// Sparsity pattern: columns of each row of a matrix, for node groups, factors and multigrid.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace plica {
 
 /// Row n has the columns columns[starts[n]] to columns[starts[n + 1] - 1], ascending.
-struct Rows {
+struct SparsePattern {
   std::vector<int> starts{0}, columns;
 
   [[nodiscard]] int count() const { return static_cast<int>(starts.size()) - 1; }
@@ -24,16 +24,16 @@ struct Rows {
 };
 
 /// Return the pattern of a symmetric matrix without its diagonal from the part on and below it.
-Rows neighbours_of(const Rows& lower);
+SparsePattern neighbours_of(const SparsePattern& lower);
 
 /// Return the position of each row in a nested-dissection elimination order. `lower`: pattern on and below, or below
 /// the diagonal. Reproducible, also when called by several threads.
-std::vector<int> elimination_order(const Rows& lower);
+std::vector<int> elimination_order(const SparsePattern& lower);
 
 /// Make rows by calls of take(column) in `visit(row, take)`, in any order, with repetitions allowed.
 template <class Visit>
-Rows collect_rows(int count, const Visit& visit) {
-  Rows rows;
+SparsePattern collect_pattern(int count, const Visit& visit) {
+  SparsePattern rows;
   rows.starts.assign(count + 1, 0);
   for (const bool counting : {true, false}) {  // two passes, so that rows can be found on any thread
 #pragma omp parallel
@@ -64,11 +64,11 @@ Rows collect_rows(int count, const Visit& visit) {
 struct Transposed {
   std::vector<int> starts, rows, places;
 };
-Transposed transpose(const Rows& rows, int columns);
+Transposed transpose(const SparsePattern& rows, int columns);
 
 /// Sparsity pattern of a symmetric matrix of 3 x 3 blocks, one per node: blocks on and below the diagonal; the last
 /// block of a row is diagonal.
-struct BlockPattern : Rows {
+struct BlockPattern : SparsePattern {
   [[nodiscard]] int nodes() const { return count(); }
   /// Return the index of the existing block (row, column), column <= row.
   [[nodiscard]] int find(int row, int column) const;

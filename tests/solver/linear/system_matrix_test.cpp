@@ -1,5 +1,5 @@
 // The matrix of a step, and directions of Newton's method by every way of solving with it.
-#include "solver/linear/step_matrix.hpp"
+#include "solver/linear/system_matrix.hpp"
 
 #include "core/parallel.hpp"
 #include "core/threads.hpp"
@@ -14,13 +14,13 @@
 
 namespace {
 
-std::vector<double> volume_rates(const StepMatrix& matrix, const Vectors& direction) {
+std::vector<double> volume_rates(const SystemMatrix& matrix, const Vectors& direction) {
   std::vector<double> rates(matrix.jacobian().sparse_rows());
   matrix.jacobian().rates(direction, rates);
   return rates;
 }
 
-TEST(StepMatrix, ProductIsTheSumOfTheLawsMatrixFreeProducts) {
+TEST(SystemMatrix, ProductIsTheSumOfTheLawsMatrixFreeProducts) {
   for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 2, 1}, {1, 2, 2}}) {
     const Model model = dimpling_sheet(elements);
     const Motion motion = random_motion(model.tissue, 2, 1);
@@ -28,7 +28,7 @@ TEST(StepMatrix, ProductIsTheSumOfTheLawsMatrixFreeProducts) {
     std::vector<double> pressures;
     for (std::size_t c = 0; c < model.volumes.count(); ++c) pressures.push_back(random.number());
 
-    StepMatrix matrix(model);
+    SystemMatrix matrix(model);
     matrix.set_zero();
     for (const auto& law : model.laws) law->add_tangent(motion.step(), matrix);
     model.volumes.add_tangent(motion.positions, pressures, matrix);
@@ -43,10 +43,10 @@ TEST(StepMatrix, ProductIsTheSumOfTheLawsMatrixFreeProducts) {
   }
 }
 
-TEST(StepMatrix, VolumeRatesAreTheDerivativesOfTheVolumes) {
+TEST(SystemMatrix, VolumeRatesAreTheDerivativesOfTheVolumes) {
   const Model model = dimpling_sheet({2, 2, 1});
   Motion motion = random_motion(model.tissue, 2, 4);
-  StepMatrix matrix(model);
+  SystemMatrix matrix(model);
   matrix.take_gradients(model, motion.positions);
   const Vectors direction = Random(4).vectors(model.tissue.node_count());
   const std::vector<double> rates = volume_rates(matrix, direction);
@@ -61,10 +61,10 @@ TEST(StepMatrix, VolumeRatesAreTheDerivativesOfTheVolumes) {
   for (std::size_t c = 0; c < rates.size(); ++c) EXPECT_NEAR(rates[c], (v_above[c] - v_below[c]) / (2 * d), 1e-5);
 }
 
-TEST(StepMatrix, PressureForcesAreThoseOfTheVolumes) {
+TEST(SystemMatrix, PressureForcesAreThoseOfTheVolumes) {
   const Model model = dimpling_sheet({1, 1, 2});
   const Motion motion = random_motion(model.tissue, 2, 5);
-  StepMatrix matrix(model);
+  SystemMatrix matrix(model);
   matrix.take_gradients(model, motion.positions);
   Random random(6);
   std::vector<double> pressures;
@@ -77,7 +77,7 @@ TEST(StepMatrix, PressureForcesAreThoseOfTheVolumes) {
 }
 
 // On one thread cells scatter them, on two nodes gather them.
-TEST(StepMatrix, PressureForcesAreTheSameBitsOnOneAndTwoThreads) {
+TEST(SystemMatrix, PressureForcesAreTheSameBitsOnOneAndTwoThreads) {
   const Model model(build_shell({.elements_per_cell = {3, 3, 2}}));
   ASSERT_GT(model.tissue.node_count(), 10'000u);  // worth sharing
   ConstraintJacobian jacobian(model);
@@ -96,10 +96,10 @@ TEST(StepMatrix, PressureForcesAreTheSameBitsOnOneAndTwoThreads) {
 }
 
 // The written values are Q^T [A -J^T; -J 0] Q with Q the frames, rows and columns of fixed unknowns emptied.
-TEST(StepMatrix, WrittenValuesAreTheFramedSystem) {
+TEST(SystemMatrix, WrittenValuesAreTheFramedSystem) {
   const Model model = dimpling_sheet();
   const Motion motion = random_motion(model.tissue, 2, 8);
-  StepMatrix matrix(model);
+  SystemMatrix matrix(model);
   matrix.set_zero();
   for (const auto& law : model.laws) law->add_tangent(motion.step(), matrix);
   matrix.take_gradients(model, motion.positions);
@@ -128,7 +128,7 @@ TEST(StepMatrix, WrittenValuesAreTheFramedSystem) {
 
   std::vector<double> values;
   matrix.write_values(frames, values);
-  const Rows pattern = matrix.pattern();
+  const SparsePattern pattern = matrix.pattern();
   ASSERT_EQ(pattern.count(), size);
   ASSERT_EQ(values.size(), pattern.columns.size());
   Eigen::MatrixXd written = Eigen::MatrixXd::Zero(size, size);
@@ -152,16 +152,16 @@ TEST(StepMatrix, WrittenValuesAreTheFramedSystem) {
 }
 
 // A node that is held needs no stiffness for that: nothing pulls at these, and the system is still not singular.
-TEST(StepMatrix, AFixedUnknownWithoutStiffnessHasAPivot) {
+TEST(SystemMatrix, AFixedUnknownWithoutStiffnessHasAPivot) {
   Model model(build_block({.cells = {1, 1, 1}}));
   model.volumes.hold(false);
-  StepMatrix matrix(model);
+  SystemMatrix matrix(model);
   matrix.set_zero();
   std::vector<NodeFrame> frames(model.tissue.node_count());
   for (NodeFrame& frame : frames) frame.fixed = 3;
   std::vector<double> values;
   matrix.write_values(frames, values);
-  const Rows pattern = matrix.pattern();
+  const SparsePattern pattern = matrix.pattern();
   for (int row = 0; row < pattern.count(); ++row) {
     ASSERT_GE(pattern.place(row, row), 0);
     EXPECT_GT(values[pattern.place(row, row)], 0) << "row " << row;
@@ -185,10 +185,10 @@ class Liar final : public Law {
   }
 };
 
-TEST(StepMatrix, ABlockOutsideThePatternIsAnErrorThatNamesTheLaw) {
+TEST(SystemMatrix, ABlockOutsideThePatternIsAnErrorThatNamesTheLaw) {
   Model model = dimpling_sheet();
   model.laws.push_back(std::make_unique<Liar>());
-  StepMatrix matrix(model);
+  SystemMatrix matrix(model);
   const State rest = rest_state(model);
   const Iterate at{rest.positions, rest.multipliers, rest.obstacle_forces, rest.on_obstacle};
   const Step step{rest.positions, rest.positions, rest.velocities, 1, 1};
@@ -217,7 +217,7 @@ struct Ball {
 // L as it is defined, from products with J and its transpose.
 TEST(ChequerboardFactor, IsTheInverseOfWhatForcesOnSingleNodesDo) {
   const Ball ball(8);
-  StepMatrix matrix(ball.model);
+  SystemMatrix matrix(ball.model);
   matrix.assemble(ball.model, ObstacleContacts(ball.model), ball.step(), ball.at);
   const ConstraintJacobian& jacobian = matrix.jacobian();
   ChequerboardFactor factor(jacobian, ball.frames.size());
@@ -264,7 +264,7 @@ TEST(ChequerboardFactor, TakesCellsThatAreHeld) {
   for (std::size_t k = 0; k < on_shell.size(); ++k)
     if (ball.model.held[on_shell[k].index()][0]) ball.at.on_obstacle[k] = false;
   ball.frames = node_frames(ball.model, ObstacleContacts(ball.model), ball.at);
-  StepMatrix matrix(ball.model);
+  SystemMatrix matrix(ball.model);
   matrix.assemble(ball.model, ObstacleContacts(ball.model), ball.step(), ball.at);
   ChequerboardFactor factor(matrix.jacobian(), ball.frames.size());
   ASSERT_TRUE(factor.factorise(matrix.jacobian(), matrix, ball.frames));
@@ -364,7 +364,7 @@ TEST(NewtonDirections, FarFromBalanceTheSemidefiniteTangentShowsTheWayOutOfInsta
   given.at.positions = given.previous;
   for (Vec3& position : given.at.positions) position.head<2>() *= 0.9;
   // The part of the forces that a direction leaves, by all of the tangent or its semidefinite part.
-  StepMatrix matrix(model);
+  SystemMatrix matrix(model);
   const auto left = [&](const Direction& found, bool semidefinite) {
     Step step = given.step();
     step.semidefinite_tangent = semidefinite;
@@ -411,7 +411,7 @@ TEST(NewtonDirections, EveryWayLeadsToTheSameState) {
 TEST(ObstacleBorder, SolvesForTheContactsOfNow) {
   const Model model = furrowing_sphere();
   Case given(model);
-  StepMatrix matrix(model);
+  SystemMatrix matrix(model);
   Step step = given.step();
   step.semidefinite_tangent = true;
   matrix.assemble(model, ObstacleContacts(model), step, given.at);
@@ -468,7 +468,7 @@ struct Bordered {
                  32);
   }
   ObstacleContacts contacts;
-  StepMatrix matrix;
+  SystemMatrix matrix;
   BlockCholesky factor;
   ObstacleBorder border;
 };

@@ -23,10 +23,10 @@ namespace plica {
 /// Return the pattern revisions of the laws in a step; a matrix is valid while they are unchanged.
 std::vector<int> pattern_revisions(const Model& model, const Step& step);
 
-class StepMatrix final : public TangentSink {
+class SystemMatrix final : public TangentSink {
  public:
   /// Make the matrix for steps with the patterns of this one.
-  explicit StepMatrix(const Model& model, const Step& step = {});
+  explicit SystemMatrix(const Model& model, const Step& step = {});
 
   /// Whether the patterns are unchanged.
   [[nodiscard]] bool serves(const Model& model, const Step& step) const {
@@ -35,7 +35,7 @@ class StepMatrix final : public TangentSink {
 
   /// Return the pattern of the full system, in the order of write_values. Unknowns: three per free node, then one per
   /// sparse row of J.
-  [[nodiscard]] Rows pattern() const;
+  [[nodiscard]] SparsePattern pattern() const;
 
   void set_zero();
   /// Assemble the tangent of all laws, constraints and obstacles, and J, at an iterate. std::logic_error, naming the

@@ -1,4 +1,4 @@
-#include "solver/linear/step_matrix.hpp"
+#include "solver/linear/system_matrix.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@ namespace plica {
 namespace {
 
 // The free nodes of every group that a law or a constraint joins; what joins the same groups once.
-Rows joined_nodes(const Model& model, const Step& step) {
+SparsePattern joined_nodes(const Model& model, const Step& step) {
   std::vector<NodeGroups> lists;
   const auto take = [&](NodeGroups groups) {
     if (std::ranges::find(lists, groups) == lists.end()) lists.push_back(std::move(groups));
@@ -20,7 +20,7 @@ Rows joined_nodes(const Model& model, const Step& step) {
   for_laws(model, step, [&](const Law& law, const Step& own) { take(law.node_groups(own.internal)); });
   for_held_constraints(model,
                        [&](const Constraint& constraint, std::size_t, std::size_t) { take(constraint.parts().nodes); });
-  Rows joined;
+  SparsePattern joined;
   for (const NodeGroups& groups : lists)
     for (std::size_t k = 0; k < groups.size(); ++k) {
       for (const NodeId node : groups[k])
@@ -33,9 +33,9 @@ Rows joined_nodes(const Model& model, const Step& step) {
 // The blocks that can be non-zero: of pairs within a group, and of every node with itself.
 BlockPattern pattern_of(const Model& model, const Step& step) {
   const int nodes = static_cast<int>(model.tissue.free_node_count());
-  const Rows groups = joined_nodes(model, step);
+  const SparsePattern groups = joined_nodes(model, step);
   const Transposed of_node = transpose(groups, nodes);
-  Rows lower = collect_rows(nodes, [&](int node, const auto& take) {
+  SparsePattern lower = collect_pattern(nodes, [&](int node, const auto& take) {
     take(node);
     for (int at = of_node.starts[node]; at < of_node.starts[node + 1]; ++at)
       for (const int other : groups.of(of_node.rows[at]))
@@ -53,15 +53,15 @@ std::vector<int> pattern_revisions(const Model& model, const Step& step) {
   return revisions;
 }
 
-StepMatrix::StepMatrix(const Model& model, const Step& step)
+SystemMatrix::SystemMatrix(const Model& model, const Step& step)
     : tissue_(model.tissue),
       revisions_(pattern_revisions(model, step)),
       layout_(pattern_of(model, step)),
       blocks_(layout_.columns.size()),
       jacobian_(model) {}
 
-Rows StepMatrix::pattern() const {
-  Rows pattern;
+SparsePattern SystemMatrix::pattern() const {
+  SparsePattern pattern;
   const int nodes = layout_.nodes();
   const auto end_row = [&] { pattern.starts.push_back(static_cast<int>(pattern.columns.size())); };
   for (int node = 0; node < nodes; ++node)
@@ -79,7 +79,7 @@ Rows StepMatrix::pattern() const {
   return pattern;
 }
 
-void StepMatrix::set_zero() {
+void SystemMatrix::set_zero() {
   // More than a core's caches hold. With 756 cells it would be the only shared loop of a step, and cost a run on two
   // cores a seventh of its solver's time.
   constexpr std::size_t worth_sharing = 100'000;
@@ -87,7 +87,7 @@ void StepMatrix::set_zero() {
       blocks_.size(), [&](std::size_t k) { blocks_[k].setZero(); }, worth_sharing);
 }
 
-void StepMatrix::add_block(NodeId row, NodeId column, const Mat3& block) {
+void SystemMatrix::add_block(NodeId row, NodeId column, const Mat3& block) {
   const std::size_t free = tissue_.free_node_count();
   if (row.index() < free && column.index() < free) {
     if (column <= row)
@@ -105,7 +105,7 @@ void StepMatrix::add_block(NodeId row, NodeId column, const Mat3& block) {
   });
 }
 
-void StepMatrix::add_lower(NodeId row, NodeId column, const Mat3& block) {
+void SystemMatrix::add_lower(NodeId row, NodeId column, const Mat3& block) {
   const int at = layout_.place(row.number(), column.number());
   if (at < 0)
     is_outside_ = true;  // told by `assemble`: not here, where several threads may be
@@ -113,7 +113,7 @@ void StepMatrix::add_lower(NodeId row, NodeId column, const Mat3& block) {
     blocks_[at] += block;
 }
 
-void StepMatrix::assemble(const Model& model, const ObstacleContacts& contacts, const Step& step, const Iterate& at) {
+void SystemMatrix::assemble(const Model& model, const ObstacleContacts& contacts, const Step& step, const Iterate& at) {
   set_zero();
   const auto refuse_outside = [&](std::string_view name) {
     if (is_outside_.exchange(false))
@@ -135,8 +135,8 @@ void StepMatrix::assemble(const Model& model, const ObstacleContacts& contacts, 
       add_block(contacts.node(k), contacts.node(k), -at.obstacle_forces[k] * contacts.gap(k, at.positions).hessian);
 }
 
-void StepMatrix::add_constraint_stiffness(const Model& model, std::span<const Vec3> positions,
-                                          std::span<const double> weights) {
+void SystemMatrix::add_constraint_stiffness(const Model& model, std::span<const Vec3> positions,
+                                            std::span<const double> weights) {
   jacobian_.for_parts(model, positions, takes_apart(),
                       [&](std::size_t row, std::span<const NodeId> nodes, std::span<const Vec3> gradients) {
                         // sum_p n (dc_p)^2 >= (sum_p dc_p)^2, of n parts.
@@ -147,19 +147,19 @@ void StepMatrix::add_constraint_stiffness(const Model& model, std::span<const Ve
                       });
 }
 
-double StepMatrix::mean_diagonal() const {
+double SystemMatrix::mean_diagonal() const {
   double sum = 0;
   for (int n = 0; n < layout_.nodes(); ++n) sum += blocks_[layout_.starts[n + 1] - 1].trace();
   return sum / (3 * layout_.nodes());
 }
 
-Mat3 StepMatrix::block(std::size_t row, std::size_t column) const {
+Mat3 SystemMatrix::block(std::size_t row, std::size_t column) const {
   if (column > row) return block(column, row).transpose();
   const int at = layout_.place(static_cast<int>(row), static_cast<int>(column));
   return at < 0 ? Mat3(Mat3::Zero()) : blocks_[at];
 }
 
-void StepMatrix::multiply(std::size_t node, const Vec3& direction, std::span<Vec3> product) const {
+void SystemMatrix::multiply(std::size_t node, const Vec3& direction, std::span<Vec3> product) const {
   for (std::size_t row = 0; row < product.size(); ++row) product[row] = block(row, node) * direction;
 }
 
@@ -170,7 +170,7 @@ double pivot(double own) { return own != 0 ? own : 1; }
 
 }  // namespace
 
-void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<double>& values) const {
+void SystemMatrix::write_values(std::span<const NodeFrame> frames, std::vector<double>& values) const {
   values.clear();
   values.reserve(9 * blocks_.size());
   std::vector<Mat3> turned;  // the blocks of a node's rows
@@ -208,7 +208,7 @@ void StepMatrix::write_values(std::span<const NodeFrame> frames, std::vector<dou
   }
 }
 
-void StepMatrix::write_projected_blocks(std::span<const NodeFrame> frames, UninitialisedVector<float>& values) const {
+void SystemMatrix::write_projected_blocks(std::span<const NodeFrame> frames, UninitialisedVector<float>& values) const {
   values.resize(9 * blocks_.size());
   const auto fixed_part = [](const NodeFrame& frame) {
     const auto axes = frame.axes.leftCols(frame.fixed);

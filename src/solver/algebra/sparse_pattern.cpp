@@ -1,4 +1,4 @@
-#include "solver/algebra/rows.hpp"
+#include "solver/algebra/sparse_pattern.hpp"
 
 #include <metis.h>
 
@@ -8,8 +8,8 @@
 
 namespace plica {
 
-Rows neighbours_of(const Rows& lower) {
-  Rows neighbours{std::vector<int>(lower.starts.size(), 0), {}};
+SparsePattern neighbours_of(const SparsePattern& lower) {
+  SparsePattern neighbours{std::vector<int>(lower.starts.size(), 0), {}};
   const auto for_pairs = [&](const auto& take) {
     for (int row = 0; row < lower.count(); ++row)
       for (const int column : lower.of(row))
@@ -23,8 +23,8 @@ Rows neighbours_of(const Rows& lower) {
   return neighbours;
 }
 
-std::vector<int> elimination_order(const Rows& lower) {
-  const Rows neighbours = neighbours_of(lower);
+std::vector<int> elimination_order(const SparsePattern& lower) {
+  const SparsePattern neighbours = neighbours_of(lower);
   idx_t size = lower.count();
   std::vector<idx_t> starts(neighbours.starts.begin(), neighbours.starts.end());
   std::vector<idx_t> adjacent(neighbours.columns.begin(), neighbours.columns.end());
@@ -42,7 +42,7 @@ std::vector<int> elimination_order(const Rows& lower) {
   return {places.begin(), places.end()};
 }
 
-Transposed transpose(const Rows& rows, int columns) {
+Transposed transpose(const SparsePattern& rows, int columns) {
   Transposed result;
   result.starts.assign(columns + 1, 0);
   for (const int column : rows.columns) ++result.starts[column + 1];

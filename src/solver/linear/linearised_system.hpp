@@ -17,9 +17,9 @@
 
 namespace plica {
 
-class LinearisedStep {
+class LinearisedSystem {
  public:
-  explicit LinearisedStep(const Model& model)
+  explicit LinearisedSystem(const Model& model)
       : model_(model),
         nodes_(model.tissue.node_count()),
         contacts_(model),
