@@ -26,14 +26,14 @@ MARGIN = 1.06  # around the tissue
 HEADED = 1.08  # above it, for a heading
 
 
-class Moment(NamedTuple):
+class PictureColumn(NamedTuple):
     """Tissue at one time: a column of a picture."""
 
     heading: str
     grid: Any
 
 
-class Row(NamedTuple):
+class PictureRow(NamedTuple):
     """View of a picture: a row."""
 
     sight: NDArray[np.float64]
@@ -63,11 +63,11 @@ class Source:
             self.scenario, self.times_s = run.scenario, run.frames.times_s
             self.rest = self.frames[0].points
 
-    def moment(self, index: int) -> Moment:
+    def moment(self, index: int) -> PictureColumn:
         if isinstance(self.single, Simulation):
-            return Moment(_time(self.single.time_s, False), _grid_of(self.single))
+            return PictureColumn(_time(self.single.time_s, False), _grid_of(self.single))
         frame = self.single or self.frames[index]
-        return Moment(_time(frame.time_s, bool(self.times_s) and self.times_s[-1] < 90), frame.to_pyvista())
+        return PictureColumn(_time(frame.time_s, bool(self.times_s) and self.times_s[-1] < 90), frame.to_pyvista())
 
     def telling(self) -> list[int]:
         """Snapshots at which a node first reaches 0, 1/4, … 1 of the largest displacement of the run."""
@@ -123,11 +123,11 @@ class Scene:
                 raise ValueError(f"at_x_um: {x:g} is outside the tissue; give x from {low[0]:.4g} to {high[0]:.4g}")
             self.rows.append(self._row(known, "cross-section", x))
 
-    def _row(self, known: Mapping[str, Any], name: str, at_x_um: Optional[float] = None) -> Row:
+    def _row(self, known: Mapping[str, Any], name: str, at_x_um: Optional[float] = None) -> PictureRow:
         view = _named("view", name, known)
         sight, axis = np.array(view["sight"], dtype=float), view["cut_axis"]
         usual = 0.0 if axis is None else view["cut_um"] + self.middle[axis]
-        return Row(sight / np.linalg.norm(sight), np.array(view["up"], dtype=float), axis, usual if at_x_um is None else at_x_um)
+        return PictureRow(sight / np.linalg.norm(sight), np.array(view["up"], dtype=float), axis, usual if at_x_um is None else at_x_um)
 
     def range_over(self, source: Source) -> tuple[float, float]:
         """Return the ends of the colour scale for all snapshots."""
@@ -138,7 +138,7 @@ class Scene:
         found: tuple[float, float] = _core.colour_range(self.color, low, high)
         return found
 
-    def draw(self, columns: list[Moment], limits: Optional[tuple[float, float]]) -> Image:
+    def draw(self, columns: list[PictureColumn], limits: Optional[tuple[float, float]]) -> Image:
         names: list[str] = []
         ends: list[tuple[float, float]] = []
         for column in columns:
@@ -179,7 +179,7 @@ class Scene:
         options = {"cmap": _colour_map(colours, self.field["kind"] == "steps"), "clim": (low, high)}
         return {**options, "annotations": dict(enumerate(names))} if names else options
 
-    def _half_size(self, columns: list[Moment], row: Row) -> tuple[float, float]:
+    def _half_size(self, columns: list[PictureColumn], row: PictureRow) -> tuple[float, float]:
         across, up = _axes(row)
         points = np.concatenate([column.grid.points for column in columns] + ([self.shell.points] if self.shell is not None else []))
         away = points - self.middle
@@ -200,7 +200,7 @@ class Scene:
         total = sum(h for _, h in half)
         return width, height, um_per_px, [free * h / total for _, h in half]
 
-    def _cut(self, grid: Any, row: Row) -> Any:
+    def _cut(self, grid: Any, row: PictureRow) -> Any:
         """Remove the part in front of the plane of a section."""
         if row.cut_axis is None:
             return grid
@@ -208,7 +208,7 @@ class Scene:
         origin[row.cut_axis] = row.cut_um
         return grid.clip(normal=-row.sight, origin=origin)
 
-    def _aim(self, plotter: Any, row: Row, height_um: float) -> None:
+    def _aim(self, plotter: Any, row: PictureRow, height_um: float) -> None:
         plotter.enable_parallel_projection()
         far = 4 * float(np.linalg.norm(self.rest.max(axis=0) - self.rest.min(axis=0))) + 100
         plotter.camera_position = [tuple(self.middle - far * row.sight), tuple(self.middle), tuple(row.up)]
@@ -241,7 +241,7 @@ def _size(size: Any) -> tuple[int, int]:
     return whole(width, "size", SMALLEST_PX, LARGEST_PX), whole(height, "size", SMALLEST_PX, LARGEST_PX)
 
 
-def _axes(row: Row) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _axes(row: PictureRow) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     across: NDArray[np.float64] = np.asarray(np.cross(row.sight, row.up), dtype=np.float64)
     across /= np.linalg.norm(across)
     return across, np.asarray(np.cross(across, row.sight), dtype=np.float64)

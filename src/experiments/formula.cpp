@@ -15,7 +15,7 @@ namespace plica {
 namespace {
 
 using Value = std::optional<double>;
-using Row = std::optional<std::size_t>;
+using RowIndex = std::optional<std::size_t>;
 using Part = Formula::Part;
 
 Value finite(double value) { return std::isfinite(value) ? Value(value) : std::nullopt; }
@@ -23,7 +23,7 @@ Value finite(double value) { return std::isfinite(value) ? Value(value) : std::n
 // Part from a function of the values of other parts; missing if one of them is.
 template <class Function>
 Part of(std::vector<Part> parts, Function function) {
-  return [parts = std::move(parts), function](const RunNumbers& run, Row row) -> Value {
+  return [parts = std::move(parts), function](const RunNumbers& run, RowIndex row) -> Value {
     std::vector<double> values;
     for (const Part& part : parts) {
       const Value value = part(run, row);
@@ -35,7 +35,7 @@ Part of(std::vector<Part> parts, Function function) {
 }
 
 Part number_named(const std::string& name) {
-  return [name](const RunNumbers& run, Row row) -> Value {
+  return [name](const RunNumbers& run, RowIndex row) -> Value {
     if (row)
       if (const auto column = run.series.column(name)) return run.series.rows[*row][*column];
     return number_of(run.summary, name);
@@ -43,7 +43,7 @@ Part number_named(const std::string& name) {
 }
 
 Part value_at(const std::string& name, Part time) {
-  return [name, time = std::move(time)](const RunNumbers& run, Row) -> Value {
+  return [name, time = std::move(time)](const RunNumbers& run, RowIndex) -> Value {
     const auto column = run.series.column(name);
     const Value time_s = time(run, {});
     if (!column || !time_s || run.series.rows.empty()) return std::nullopt;
@@ -53,7 +53,7 @@ Part value_at(const std::string& name, Part time) {
 
 // First time at which all of the differences begin to be positive, linear between rows.
 Part first_time(std::vector<Part> differences) {
-  return [differences = std::move(differences)](const RunNumbers& run, Row) -> Value {
+  return [differences = std::move(differences)](const RunNumbers& run, RowIndex) -> Value {
     bool held = true;  // the reference state is no beginning
     for (std::size_t k = 1; k < run.series.rows.size(); ++k) {
       double from = 0, to = 1;  // part of the interval between the rows
@@ -76,7 +76,7 @@ Part first_time(std::vector<Part> differences) {
 
 // Largest or least value at the rows at which no difference is negative.
 Part extreme(std::vector<Part> parts, bool is_largest) {
-  return [parts = std::move(parts), is_largest](const RunNumbers& run, Row) -> Value {
+  return [parts = std::move(parts), is_largest](const RunNumbers& run, RowIndex) -> Value {
     Value found;
     for (std::size_t k = 0; k < run.series.rows.size(); ++k) {
       const Value value = parts.front()(run, k);
@@ -172,7 +172,7 @@ class FormulaParser {
       return inner;
     }
     const std::string name = word();
-    if (const Value number = number_in(name)) return [number](const RunNumbers&, Row) { return number; };
+    if (const Value number = number_in(name)) return [number](const RunNumbers&, RowIndex) { return number; };
     if (take('(')) return function(name);
     if (take('@')) {
       Part time = factor();

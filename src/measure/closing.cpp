@@ -211,18 +211,18 @@ std::optional<double> time_of_reaching(std::span<const double> times_s, std::spa
   return std::nullopt;
 }
 
-std::optional<double> SpeedRow::speed_ratio() const {
+std::optional<double> FurrowSpeeds::speed_ratio() const {
   constexpr double rounding = 1e-12;  // relative to the speed of the ends: a slower centre counts as still
   if (!vml_speed_um_per_s || !vce_speed_um_per_s || !(*vml_speed_um_per_s > rounding * *vce_speed_um_per_s))
     return std::nullopt;
   return *vce_speed_um_per_s / *vml_speed_um_per_s;
 }
 
-SpeedHistory speed_history(std::span<const SpeedRow> rows) {
+SpeedHistory speed_history(std::span<const FurrowSpeeds> rows) {
   SpeedHistory history;
   double fastest_middle = 0;
-  for (const SpeedRow& row : rows) fastest_middle = std::max(fastest_middle, row.vml_speed_um_per_s.value_or(0));
-  const auto lead = [](const SpeedRow& row) { return *row.vce_speed_um_per_s - *row.vml_speed_um_per_s; };
+  for (const FurrowSpeeds& row : rows) fastest_middle = std::max(fastest_middle, row.vml_speed_um_per_s.value_or(0));
+  const auto lead = [](const FurrowSpeeds& row) { return *row.vce_speed_um_per_s - *row.vml_speed_um_per_s; };
   std::optional<std::size_t> peak;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (!rows[i].vml_speed_um_per_s || *rows[i].vml_speed_um_per_s <= 0.01 * fastest_middle) continue;

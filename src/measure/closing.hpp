@@ -52,7 +52,7 @@ std::optional<Knee> knee(std::span<const double> times_s, std::span<const double
 std::optional<double> time_of_reaching(std::span<const double> times_s, std::span<const double> values, double level);
 
 /// Speeds and displacements of VML and VCE in a step; empty if missing, as in the reference state.
-struct SpeedRow {
+struct FurrowSpeeds {
   double time_s = 0;  // at its end
   std::optional<double> vml_speed_um_per_s, vce_speed_um_per_s;
   std::optional<double> vml_displacement_um, vce_displacement_um;
@@ -68,6 +68,6 @@ struct SpeedHistory {
   std::optional<double> vml_displacement_at_equal_speed_um, vce_displacement_at_equal_speed_um;
 };
 
-SpeedHistory speed_history(std::span<const SpeedRow> rows);
+SpeedHistory speed_history(std::span<const FurrowSpeeds> rows);
 
 }  // namespace plica

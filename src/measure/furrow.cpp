@@ -263,10 +263,10 @@ const FurrowSites& sites_of(const M& m) { return m.of_run<FurrowSites>(); }
 LipShape lips_of_step(const M& m) { return lip_shape(m.model.tissue, sites_of(m), m.state.positions); }
 
 // Displacements, and for steps speeds, of the furrow's centre and ends.
-SpeedRow speeds_of_step(const M& m) {
+FurrowSpeeds speeds_of_step(const M& m) {
   const FurrowSites& sites = sites_of(m);
   const Tissue& tissue = m.model.tissue;
-  SpeedRow row;
+  FurrowSpeeds row;
   row.time_s = m.state.time_s;
   row.vml_displacement_um = mean_node_displacement(tissue, sites.vml, m.state.positions);
   row.vce_displacement_um = mean_node_displacement(tissue, sites.vce, m.state.positions);
@@ -299,7 +299,7 @@ Column::OfRun reaching(std::string_view column, double level) {
 }
 
 SpeedHistory history_of(std::span<const Observation> rows) {
-  std::vector<SpeedRow> speeds;
+  std::vector<FurrowSpeeds> speeds;
   speeds.reserve(rows.size());
   for (const Observation& row : rows)
     speeds.push_back({row.time_s(), row["vml_speed_um_per_s"], row["vce_speed_um_per_s"], row["vml_displacement_um"],
@@ -343,16 +343,16 @@ std::vector<Column> columns_of_furrow() {
        part_of(lips_of_step, &LipShape::highest_points_distance_um)},
       {"vml_speed_um_per_s", nothing,
        "Speed of the barycentre (mean of eight corners) of the central midline cell (VML).",
-       part_of(speeds_of_step, &SpeedRow::vml_speed_um_per_s)},
+       part_of(speeds_of_step, &FurrowSpeeds::vml_speed_um_per_s)},
       {"vce_speed_um_per_s", nothing, "Speed of the barycentre of the near-end midline cell (VCE).",
-       part_of(speeds_of_step, &SpeedRow::vce_speed_um_per_s)},
+       part_of(speeds_of_step, &FurrowSpeeds::vce_speed_um_per_s)},
       {"speed_ratio", nothing, "Speed of VCE / speed of VML, $v_c/v_m$.",
        [](const M& m) { return m.once(speeds_of_step).speed_ratio(); }},
       {"vml_displacement_um", last,
        "Mean displacement of the eight corner nodes of VML from the reference state (mean of lengths).",
-       part_of(speeds_of_step, &SpeedRow::vml_displacement_um)},
+       part_of(speeds_of_step, &FurrowSpeeds::vml_displacement_um)},
       {"vce_displacement_um", last, "Mean displacement of the corner nodes of VCE.",
-       part_of(speeds_of_step, &SpeedRow::vce_displacement_um)},
+       part_of(speeds_of_step, &FurrowSpeeds::vce_displacement_um)},
       {"vml_apical_area_ratio", last, "Apical area of VML / reference area; bilinear facets, 2 × 2 Gauss points.",
        [](const M& m) { return mean_apical_area_ratio(m.model.tissue, sites_of(m).vml, m.state.positions); }},
       {"vce_apical_area_ratio", last, "Apical area of VCE / reference area.",

@@ -17,8 +17,8 @@ struct Place {
   std::string file;
   int line = 0;
   int layer = 0;
-  std::string written;       // the dotted key as it was written
-  const Row* row = nullptr;  // null for a table
+  std::string written;          // the dotted key as it was written
+  const KeyRow* row = nullptr;  // null for a table
 };
 
 struct Input {

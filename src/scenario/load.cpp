@@ -86,7 +86,7 @@ std::vector<Document> read_documents(const ScenarioSource& source, std::vector<D
 
 /// Whether the key takes a text, whose quotes the shell may have removed.
 bool takes_text(const std::string& key) {
-  const Row* row = row_of_key(key);
+  const KeyRow* row = row_of_key(key);
   const std::string type = row == nullptr ? "" : row->type();
   return type == "text" || type == "word";
 }
@@ -186,7 +186,7 @@ void check_required_keys(const ScenarioTable& info, const Scenario& scenario, In
   const std::vector<std::string> names = info.named() ? info.names(scenario) : std::vector<std::string>();
   for (const std::string& name : names) {
     const std::string path = fmt::format("{}.{}", info.stem(), name);
-    for (const Row& row : info.rows) {
+    for (const KeyRow& row : info.rows) {
       const std::string address = fmt::format("{}.{}", path, row.key);
       if (!row.options.required || !input.sound(path) || input.place(address) != nullptr) continue;
       // A misspelt table name is a frequent cause.

@@ -73,7 +73,7 @@ std::string in_toml(const Items& items) {
 }
 
 /// Returns the value of a row in TOML, or an empty text without a value.
-std::string value_text(const Row& row, Scenario& scenario, const std::string& name) {
+std::string value_text(const KeyRow& row, Scenario& scenario, const std::string& name) {
   const auto text = [&]<class Field>(const Field& field) -> std::string {
     if constexpr (std::is_same_v<Field, std::monostate>) {
       return "";
@@ -92,7 +92,7 @@ std::string value_text(const Row& row, Scenario& scenario, const std::string& na
 std::string table_text(const ScenarioTable& info, const std::string& name, Scenario& scenario) {
   std::string text;
   if (!info.path.empty()) text = fmt::format("\n[{}{}{}]\n", info.stem(), name.empty() ? "" : ".", name);
-  for (const Row& row : info.rows) {
+  for (const KeyRow& row : info.rows) {
     // Alternatives in another unit fill the same field; only the two tolerances have a field each.
     const bool repeats = !row.options.instead_of.empty() && row.options.scale != 1;
     if (repeats || !row.used_by(scenario.embryo.shape)) continue;
@@ -102,7 +102,7 @@ std::string table_text(const ScenarioTable& info, const std::string& name, Scena
   return text;
 }
 
-std::string default_text(const Row& row) {
+std::string default_text(const KeyRow& row) {
   if (row.options.required) return "required";
   Scenario defaults;
   const std::string value = value_text(row, defaults, "NAME");
@@ -118,7 +118,7 @@ std::string in_column(const std::string& text) {
   return result;
 }
 
-std::string allowed_text(const Row& row) {
+std::string allowed_text(const KeyRow& row) {
   std::string text = row.allowed.text();
   if (!row.options.shapes.empty())
     text += fmt::format("{}with shape {}", text.empty() ? "" : "; ", fmt::join(row.options.shapes, ", "));
@@ -148,7 +148,7 @@ std::string link_to(std::string_view label, std::string_view heading) {
 }
 
 /// Returns the shared inner tables of a row, or null for a key of the table itself.
-const InnerTables* inner_of(const Row& row) {
+const InnerTables* inner_of(const KeyRow& row) {
   const std::size_t dot = row.key.find('.');
   if (dot == std::string_view::npos) return nullptr;
   for (const InnerTables& inner : inner_tables())
@@ -156,30 +156,30 @@ const InnerTables* inner_of(const Row& row) {
   return nullptr;
 }
 
-std::vector<const Row*> own_rows(const ScenarioTable& info) {
-  std::vector<const Row*> rows;
-  for (const Row& row : info.rows)
+std::vector<const KeyRow*> own_rows(const ScenarioTable& info) {
+  std::vector<const KeyRow*> rows;
+  for (const KeyRow& row : info.rows)
     if (inner_of(row) == nullptr) rows.push_back(&row);
   return rows;
 }
 
-bool is_inside(const Row& row, std::string_view key) { return row.key.starts_with(std::string(key) + '.'); }
+bool is_inside(const KeyRow& row, std::string_view key) { return row.key.starts_with(std::string(key) + '.'); }
 
 /// Returns the rows of one key of inner tables, from the first table that has it.
-std::vector<const Row*> rows_of_key(std::string_view key) {
-  std::vector<const Row*> rows;
+std::vector<const KeyRow*> rows_of_key(std::string_view key) {
+  std::vector<const KeyRow*> rows;
   for (const ScenarioTable& info : scenario_tables())
-    for (const Row& row : info.rows)
+    for (const KeyRow& row : info.rows)
       if (is_inside(row, key) && (rows.empty() || rows.front()->table == row.table)) rows.push_back(&row);
   return rows;
 }
 
 /// Returns the rows of inner tables; two that differ in name only (program, stiffness_program) are listed once.
-std::vector<const Row*> rows_of_inner(const InnerTables& inner) {
-  const auto leaf = [](const Row* row) { return row->key.substr(row->key.find('.')); };
-  std::vector<const Row*> all;
+std::vector<const KeyRow*> rows_of_inner(const InnerTables& inner) {
+  const auto leaf = [](const KeyRow* row) { return row->key.substr(row->key.find('.')); };
+  std::vector<const KeyRow*> all;
   for (const std::string_view key : inner.keys) {
-    const std::vector<const Row*> rows = rows_of_key(key);
+    const std::vector<const KeyRow*> rows = rows_of_key(key);
     if (!std::ranges::equal(all, rows, {}, leaf, leaf)) all.insert(all.end(), rows.begin(), rows.end());
   }
   return all;
@@ -191,7 +191,7 @@ std::string inner_links(const ScenarioTable& info) {
   for (const InnerTables& inner : inner_tables()) {
     std::vector<std::string> keys;
     for (const std::string_view key : inner.keys)
-      if (std::ranges::any_of(info.rows, [&](const Row& row) { return is_inside(row, key); }))
+      if (std::ranges::any_of(info.rows, [&](const KeyRow& row) { return is_inside(row, key); }))
         keys.push_back(fmt::format("`{}`", key));
     if (!keys.empty())
       links.push_back(fmt::format("{} ({})", fmt::join(keys, ", "), link_to(inner.title, inner.title)));
@@ -203,9 +203,9 @@ std::string section_of(const std::string& heading, std::string_view meaning) {
   return fmt::format("\n## {}\n\n{}\n\n", heading, meaning);
 }
 
-std::string key_table(const std::vector<const Row*>& rows) {
+std::string key_table(const std::vector<const KeyRow*>& rows) {
   std::string text = "| key | type | default | allowed | meaning |\n|---|---|---|---|---|\n";
-  for (const Row* row : rows)
+  for (const KeyRow* row : rows)
     text += fmt::format("| `{}` | {} | {} | {} | {} |\n", row->key, row->type(), default_text(*row), allowed_text(*row),
                         row->meaning);
   return text;

@@ -35,7 +35,7 @@ std::string in_toml(const toml::node& node) {
 
 Problem wrong_type(const toml::node& node) { return fmt::format("{} has the wrong type", in_toml(node)); }
 
-Problem read(const toml::node& node, const Row& row, int& target) {
+Problem read(const toml::node& node, const KeyRow& row, int& target) {
   if (node.is_floating_point()) return fmt::format("{} is not an integer", in_toml(node));
   const auto value = node.value_exact<std::int64_t>();
   if (!value) return wrong_type(node);
@@ -45,7 +45,7 @@ Problem read(const toml::node& node, const Row& row, int& target) {
   return {};
 }
 
-Problem read(const toml::node& node, const Row& row, double& target) {
+Problem read(const toml::node& node, const KeyRow& row, double& target) {
   if (!node.is_number()) return wrong_type(node);
   const double value = *node.value<double>();
   if (!std::isfinite(value)) return fmt::format("{} is not a finite number", value);
@@ -54,14 +54,14 @@ Problem read(const toml::node& node, const Row& row, double& target) {
   return {};
 }
 
-Problem read(const toml::node& node, const Row&, bool& target) {
+Problem read(const toml::node& node, const KeyRow&, bool& target) {
   const auto value = node.value_exact<bool>();
   if (!value) return wrong_type(node);
   target = *value;
   return {};
 }
 
-Problem read(const toml::node& node, const Row& row, std::string& target) {
+Problem read(const toml::node& node, const KeyRow& row, std::string& target) {
   const auto value = node.value_exact<std::string>();
   if (!value) return wrong_type(node);
   if (value->empty()) return "the text is empty";
@@ -74,7 +74,7 @@ Problem read(const toml::node& node, const Row& row, std::string& target) {
 
 /// Reads `node` as a list and passes each item to `take`.
 template <class Item, class Take>
-Problem read_items(const toml::node& node, const Row& row, const Take& take) {
+Problem read_items(const toml::node& node, const KeyRow& row, const Take& take) {
   const toml::array* items = node.as_array();
   if (items == nullptr) return wrong_type(node);
   if (items->empty() && !row.options.may_be_empty) return "the list is empty";
@@ -87,13 +87,13 @@ Problem read_items(const toml::node& node, const Row& row, const Take& take) {
 }
 
 template <class Item>
-Problem read(const toml::node& node, const Row& row, std::vector<Item>& target) {
+Problem read(const toml::node& node, const KeyRow& row, std::vector<Item>& target) {
   target.clear();
   return read_items<Item>(node, row, [&](const Item& item) { target.push_back(item); });
 }
 
 template <class Item, std::size_t n>
-Problem read(const toml::node& node, const Row& row, std::array<Item, n>& target) {
+Problem read(const toml::node& node, const KeyRow& row, std::array<Item, n>& target) {
   std::vector<Item> items;
   if (Problem problem = read(node, row, items)) return problem;
   if (items.size() != n) return fmt::format("{} values are given, but {} are required", items.size(), n);
@@ -103,7 +103,7 @@ Problem read(const toml::node& node, const Row& row, std::array<Item, n>& target
 }
 
 template <class Value>
-Problem read(const toml::node& node, const Row& row, std::optional<Value>& target) {
+Problem read(const toml::node& node, const KeyRow& row, std::optional<Value>& target) {
   const std::string_view none = row.allowed.word_for_none;
   const auto word = node.value_exact<std::string>();
   if (!none.empty() && word && *word == none) {
@@ -116,7 +116,7 @@ Problem read(const toml::node& node, const Row& row, std::optional<Value>& targe
   return problem;
 }
 
-Problem read(const toml::node& node, const Row& row, const Slot& slot) {
+Problem read(const toml::node& node, const KeyRow& row, const Slot& slot) {
   return std::visit(
       [&](auto target) -> Problem {
         if constexpr (std::is_same_v<decltype(target), std::monostate>) {
@@ -130,7 +130,7 @@ Problem read(const toml::node& node, const Row& row, const Slot& slot) {
 }
 
 /// Returns what to set the key to, with the nearest word for a misspelt one.
-std::string remedy_for(const toml::node& node, const Row& row) {
+std::string remedy_for(const toml::node& node, const KeyRow& row) {
   const std::vector<std::string> words(row.allowed.words.begin(), row.allowed.words.end());
   std::string word = node.value_or(std::string());
   if (const toml::array* items = node.as_array())
@@ -153,7 +153,7 @@ struct Suggestion {
 
 Suggestion suggest_key(const std::string& table, const std::string& path, const std::string& key) {
   std::vector<std::string> known, same_stem;
-  for (const Row& row : rows_of(table)) {
+  for (const KeyRow& row : rows_of(table)) {
     // For inner tables the name is enough unless the key is inside one.
     const std::size_t dot = key.find('.') == std::string::npos ? row.key.find('.') : std::string_view::npos;
     const std::string name(row.key.substr(0, dot));
@@ -169,7 +169,7 @@ Suggestion suggest_key(const std::string& table, const std::string& path, const 
   }
   if (const auto nearest = nearest_name(key, known)) return {did_you_mean(key, known), table.empty() ? *nearest : path};
   for (const ScenarioTable& info : scenario_tables())
-    if (std::ranges::any_of(info.rows, [&](const Row& row) { return row.key == key; }))
+    if (std::ranges::any_of(info.rows, [&](const KeyRow& row) { return row.key == key; }))
       return {fmt::format("move it to [{}{}]", info.stem(), info.named() ? ".NAME" : ""), ""};
   return {did_you_mean(key, known), path};
 }
@@ -205,7 +205,7 @@ class Reader {
     const ScenarioTable* inner = table_with_stem(info.stem(), true);
     for (const auto& [key, node] : table) {
       const std::string_view word = key.str();
-      const bool is_key = std::ranges::any_of(info.rows, [&](const Row& row) { return row.key == word; });
+      const bool is_key = std::ranges::any_of(info.rows, [&](const KeyRow& row) { return row.key == word; });
       if (inner != nullptr && node.is_table() && !is_key) {
         read_named_table(*inner, std::string(word), key, node);
       } else {
@@ -220,7 +220,7 @@ class Reader {
     input_.diagnostics.push_back({layer_.file, line_of(key), written, std::move(problem), std::move(remedy)});
   }
 
-  void note(const std::string& address, const std::string& written, const toml::key& key, const Row* row) {
+  void note(const std::string& address, const std::string& written, const toml::key& key, const KeyRow* row) {
     input_.places[address] = {layer_.file, line_of(key), layer_.number, written, row};
   }
 
@@ -294,7 +294,7 @@ class Reader {
     const std::string row_key = prefix + std::string(key.str());
     const std::string path = name.empty() ? table : joined(table.substr(0, table.find('.')), name);
     const std::string written = joined(path, row_key);
-    for (const Row& row : rows_of(table)) {
+    for (const KeyRow& row : rows_of(table)) {
       if (row.key == row_key) return read_value(row, name, path, written, key, node);
       if (row.key.starts_with(row_key + ".")) {
         const toml::table* inner =
@@ -309,7 +309,7 @@ class Reader {
     input_.doubtful.insert(suggestion.meant);
   }
 
-  void read_value(const Row& row, const std::string& name, const std::string& path, const std::string& written,
+  void read_value(const KeyRow& row, const std::string& name, const std::string& path, const std::string& written,
                   const toml::key& key, const toml::node& node) {
     const std::string address = joined(path, row.options.instead_of.empty() ? row.key : row.options.instead_of);
     if (const Place* before = input_.place(address); before != nullptr && before->row != &row) {

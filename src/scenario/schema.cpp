@@ -13,7 +13,7 @@ bool Allowed::contains(double value) const {
   return (low_included ? value >= low : value > low) && (high_included ? value <= high : value < high);
 }
 
-const Row* row_of_key(std::string_view dotted) {
+const KeyRow* row_of_key(std::string_view dotted) {
   // Returns a key without its first part.
   const auto behind = [](std::string_view key) {
     const std::size_t dot = key.find('.');
@@ -24,7 +24,7 @@ const Row* row_of_key(std::string_view dotted) {
     if (!table.path.empty() && !key.starts_with(std::string(table.stem()) + '.')) continue;
     if (!table.path.empty()) key = behind(key);
     if (table.named()) key = behind(key);
-    for (const Row& row : table.rows)
+    for (const KeyRow& row : table.rows)
       if (key == row.key) return &row;
   }
   return nullptr;
@@ -46,7 +46,7 @@ std::string Allowed::text() const {
   return word_for_none.empty() ? range : fmt::format("{} or \"{}\"", range, word_for_none);
 }
 
-std::string Row::type() const {
+std::string KeyRow::type() const {
   Scenario scratch;
   const Slot slot = field(scratch, "name");
   const bool has_words = !allowed.words.empty();
@@ -61,7 +61,7 @@ std::string Row::type() const {
   return has_words ? "word" : "text";
 }
 
-std::string Row::expected() const {
+std::string KeyRow::expected() const {
   const std::string type = this->type();
   const std::string range = allowed.text();
   if (type == "word") return "one of: " + range;
@@ -72,9 +72,9 @@ std::string Row::expected() const {
   return noun + (range.front() == '>' || range.front() == '<' ? " " : ", ") + range;
 }
 
-std::string Row::remedy() const { return fmt::format("set {} to {}", key.substr(key.rfind('.') + 1), expected()); }
+std::string KeyRow::remedy() const { return fmt::format("set {} to {}", key.substr(key.rfind('.') + 1), expected()); }
 
-bool Row::used_by(std::string_view shape) const {
+bool KeyRow::used_by(std::string_view shape) const {
   return options.shapes.empty() || std::ranges::find(options.shapes, shape) != options.shapes.end();
 }
 
@@ -104,7 +104,7 @@ std::span<const InnerTables> inner_tables() {
   return tables;
 }
 
-std::span<const Row> rows_of(std::string_view table) {
+std::span<const KeyRow> rows_of(std::string_view table) {
   for (const ScenarioTable& one : scenario_tables())
     if (one.path == table) return one.rows;
   return {};
@@ -122,7 +122,7 @@ std::span<const std::string_view> expectation_names() {
   return names;
 }
 
-void reset_to_default(const Row& row, Scenario& scenario, const std::string& name) {
+void reset_to_default(const KeyRow& row, Scenario& scenario, const std::string& name) {
   Scenario defaults;
   const Slot from = row.field(defaults, name);
   const Slot to = row.field(scenario, name);

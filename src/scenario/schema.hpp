@@ -41,7 +41,7 @@ struct Allowed {
   [[nodiscard]] std::string text() const;
 };
 
-struct RowOptions {
+struct KeyOptions {
   std::string_view instead_of = {};  // key of the same table that has the primary unit
   double scale = 1;                  // unit of the key / unit of the field
   bool required = false;
@@ -50,13 +50,13 @@ struct RowOptions {
   std::vector<std::string_view> shapes = {};  // embryo shapes that use it; empty: all
 };
 
-struct Row {
+struct KeyRow {
   std::string_view table;  // "embryo"; "contraction.*" for named tables; "" at the top level
   std::string_view key;    // a dot marks a key of an inner table, such as "profile.shape"
   std::function<Slot(Scenario&, const std::string& name)> field;  // creates the named table if needed
   Allowed allowed;
   std::string_view meaning;
-  RowOptions options = {};
+  KeyOptions options = {};
 
   [[nodiscard]] std::string type() const;      // "number", "3 integers", ...
   [[nodiscard]] std::string expected() const;  // type and allowed values, such as "a number > 0"
@@ -72,7 +72,7 @@ struct ScenarioTable {
   std::string_view path;
   std::string_view meaning;
   std::string_view group;  // heading in the contents of the reference page
-  std::vector<Row> rows = {};
+  std::vector<KeyRow> rows = {};
   std::function<std::vector<std::string>(const Scenario&)> names = {};  // named tables only
   /// Names the regions that it refers to, which may be empty.
   std::function<void(const Scenario&, const TakeRegion&)> regions = {};
@@ -99,13 +99,13 @@ struct InnerTables {
   std::string_view meaning;
 };
 
-std::span<const ScenarioTable> scenario_tables();       // in the order of a resolved scenario
-std::span<const Row> rows_of(std::string_view table);   // rows of one table, in order
-std::span<const InnerTables> inner_tables();            // in the order of the reference page
-const Row* row_of_key(std::string_view dotted);         // "contraction.apical.region"; null if unknown
-std::span<const std::string_view> expectation_names();  // names allowed in [expect]
+std::span<const ScenarioTable> scenario_tables();         // in the order of a resolved scenario
+std::span<const KeyRow> rows_of(std::string_view table);  // rows of one table, in order
+std::span<const InnerTables> inner_tables();              // in the order of the reference page
+const KeyRow* row_of_key(std::string_view dotted);        // "contraction.apical.region"; null if unknown
+std::span<const std::string_view> expectation_names();    // names allowed in [expect]
 
 /// Resets the row's field of `scenario` to its default.
-void reset_to_default(const Row& row, Scenario& scenario, const std::string& name);
+void reset_to_default(const KeyRow& row, Scenario& scenario, const std::string& name);
 
 }  // namespace plica

@@ -31,7 +31,7 @@ std::vector<GivenKey> given_keys(const StudyInput& study) {
 
 // Table of the scenario that contains a key: "cortex.apical" or "solver".
 std::string table_of(const std::string& key) {
-  const Row* row = row_of_key(key);
+  const KeyRow* row = row_of_key(key);
   const std::size_t first = key.find('.');
   const bool is_named = row == nullptr || row->table.ends_with(".*");
   return key.substr(0, is_named && first != std::string::npos ? key.find('.', first + 1) : first);

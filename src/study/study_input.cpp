@@ -101,7 +101,7 @@ class Reader : TomlReader {
     const std::string place = "vary." + path;
     StudyKey key;
     key.key = path, key.line = static_cast<int>(node.source().begin.line);
-    const Row* row = row_of_key(path);
+    const KeyRow* row = row_of_key(path);
     key.is_whole = row != nullptr && row->type() == "integer";
     const toml::table* given = node.as_table();
     if (given == nullptr)

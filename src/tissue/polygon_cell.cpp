@@ -24,10 +24,10 @@ std::vector<OutlineQuad> fan(const OutlineRing& ring, std::size_t from) {
   return result;
 }
 
-using Steps = std::map<NodeId, NodeId>;  // from a node to the next
+using NextNodes = std::map<NodeId, NodeId>;  // from a node to the next
 
 // About the facets, counter-clockwise seen from above the apex.
-Steps rim_of(std::span<const Facet> facets, CellSide side) {
+NextNodes rim_of(std::span<const Facet> facets, CellSide side) {
   std::map<std::pair<NodeId, NodeId>, int> edges;
   for (const Facet& facet : facets)
     for (int i = 0; i < 4; ++i) {
@@ -35,14 +35,14 @@ Steps rim_of(std::span<const Facet> facets, CellSide side) {
       if (side == CellSide::basal) std::swap(from, to);
       ++edges[{from, to}];
     }
-  Steps rim;
+  NextNodes rim;
   for (const auto& [edge, count] : edges)
     if (!edges.contains({edge.second, edge.first})) rim[edge.first] = edge.second;
   return rim;
 }
 
 // The free nodes from one to another; empty where the steps do not lead there.
-std::vector<NodeId> chain(const Tissue& tissue, const Steps& steps, NodeId from, NodeId to) {
+std::vector<NodeId> chain(const Tissue& tissue, const NextNodes& steps, NodeId from, NodeId to) {
   std::vector<NodeId> nodes = {from};
   NodeId at = from;
   for (std::size_t count = 0; count < steps.size(); ++count) {
@@ -267,12 +267,12 @@ std::optional<PolygonChains> chains_about(const Tissue& tissue, std::span<const 
   const std::size_t n = cell.sides();
   for (const CellSide side : {CellSide::basal, CellSide::apical}) {
     const auto corners = side == CellSide::apical ? cell.apical_corners() : cell.basal_corners();
-    const Steps rim = rim_of(side == CellSide::apical ? apical : basal, side);
+    const NextNodes rim = rim_of(side == CellSide::apical ? apical : basal, side);
     for (std::size_t i = 0; i < n; ++i)
       (side == CellSide::apical ? chains.apical : chains.basal)
           .push_back(chain(tissue, rim, corners[i], corners[(i + 1) % n]));
   }
-  const Steps above = nodes_above(tissue, cell);
+  const NextNodes above = nodes_above(tissue, cell);
   for (std::size_t i = 0; i < n; ++i)
     chains.lateral.push_back(chain(tissue, above, cell.basal_corners()[i], cell.apical_corners()[i]));
   for (const auto* some : {&chains.basal, &chains.apical, &chains.lateral})

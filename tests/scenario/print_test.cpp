@@ -20,7 +20,7 @@ int expect_same(Scenario a, Scenario b) {
       EXPECT_EQ(names, info.names(b));
     }
     for (const std::string& name : names) {
-      for (const Row& row : info.rows) {
+      for (const KeyRow& row : info.rows) {
         const Slot left = row.field(a, name), right = row.field(b, name);
         std::visit(
             [&](auto field) {
@@ -118,7 +118,7 @@ TEST(Reference, HasEveryRowOfTheTable) {
   int count = 0, inner_count = 0;
   for (const ScenarioTable& info : scenario_tables()) {
     const std::string section = section_of(page, heading_of(info));
-    for (const Row& row : info.rows) {
+    for (const KeyRow& row : info.rows) {
       const InnerTables* inner = inner_of(row.key);
       const std::string& there = inner == nullptr ? section : section_of(page, std::string(inner->title));
       std::string key(row.key);
@@ -140,7 +140,7 @@ TEST(Reference, HasEveryRowOfTheTable) {
 TEST(Reference, TablesThatShareInnerTablesHaveTheSameKeysInThem) {
   std::map<std::string, std::map<std::string, std::string>> meanings;  // by key of the inner table, and table
   for (const ScenarioTable& info : scenario_tables())
-    for (const Row& row : info.rows) {
+    for (const KeyRow& row : info.rows) {
       if (inner_of(row.key) == nullptr) continue;
       const std::size_t dot = row.key.find('.');
       std::string key(row.key.substr(0, dot)), table(row.table);
@@ -194,7 +194,7 @@ int tables = 0;  // that were looked at
 
 // Returns the words that a table allows for a key.
 std::vector<std::string_view> allowed(std::string_view table, std::string_view key) {
-  for (const Row& row : rows_of(table))
+  for (const KeyRow& row : rows_of(table))
     if (row.key == key) return row.allowed.words;
   ADD_FAILURE() << "no key " << table << "." << key;
   return {};
@@ -263,7 +263,7 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   // are no enums, and of enclosed surfaces there is one.
   int with_words = 0;
   for (const ScenarioTable& info : scenario_tables())
-    for (const Row& row : info.rows) with_words += row.allowed.words.empty() ? 0 : 1;
+    for (const KeyRow& row : info.rows) with_words += row.allowed.words.empty() ? 0 : 1;
   EXPECT_EQ(tables + 6, with_words)
       << "embryo.shape, elasticity.model, volume.method, monitor.*.quantity, enclosed.*.surface, measure.sets";
 }

@@ -33,7 +33,7 @@ ScenarioTable ablation_table() {
   using A = AblationInput;
   ScenarioTable info{
       "ablation.*", "Laser ablation or optogenetic inhibition: loss of cortical and contractile strength.", "Activity"};
-  const auto row = rows_in(info, &Scenario::ablations);
+  const auto row = key_rows(info, &Scenario::ablations);
   info.rows = {
       row("region", &A::region, anything, "Cells that lose strength.", {.required = true}),
       row("faces", &A::faces, one_of(words::edges),

@@ -200,10 +200,10 @@ void check_pulse(const std::string& table, PulseInput& pulse, const TimeInput& t
 
 }  // namespace
 
-void add_strengths(std::vector<Row>& rows, const RowsIn<ActingInput>& table) {
+void add_strengths(std::vector<KeyRow>& rows, const KeyRows<ActingInput>& table) {
   using A = ActingInput;
   const auto profile = [&](std::string_view key, auto field, const Allowed& allowed, std::string_view meaning,
-                           const RowOptions& options = {}) {
+                           const KeyOptions& options = {}) {
     rows.push_back(table(key, &A::profile, field, allowed, meaning, options));
   };
   profile("profile.shape", &ProfileInput::shape, one_of(words::profile_shapes),
@@ -258,7 +258,7 @@ void add_strengths(std::vector<Row>& rows, const RowsIn<ActingInput>& table) {
                        "independent of mesh numbering; default number."));
 }
 
-void add_pattern(std::vector<Row>& rows, const RowsIn<ActingInput>& table) {
+void add_pattern(std::vector<KeyRow>& rows, const KeyRows<ActingInput>& table) {
   using A = ActingInput;
   add_strengths(rows, table);
   rows.push_back(table("delay.speed_um_per_s", &A::delay, &DelayInput::speed_um_per_s, positive_or_none,

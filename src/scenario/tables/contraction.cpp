@@ -64,7 +64,7 @@ void describe(const C& input, const Scenario& scenario, Acting& acting) {
 
 ScenarioTable contraction_table() {
   ScenarioTable info{"contraction.*", "Contractile springs on cell edges.", "Activity"};
-  const auto row = rows_in(info, &Scenario::contractions);
+  const auto row = key_rows(info, &Scenario::contractions);
   info.rows = {
       row("region", &C::region, anything, "Cells that contract.", {.required = true}),
       row("edges", &C::faces, one_of(words::edges), "Edges that carry springs."),

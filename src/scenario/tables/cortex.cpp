@@ -124,7 +124,7 @@ void describe(const X& input, const Scenario& scenario, Acting& acting) {
 ScenarioTable cortex_table() {
   ScenarioTable info{"cortex.*", "Actomyosin cortex: thin active, elastic layer on cell faces, with isotropic tension.",
                      "Activity"};
-  const auto row = rows_in(info, &Scenario::cortices);
+  const auto row = key_rows(info, &Scenario::cortices);
   info.rows = {
       row("region", &X::region, anything, "Cells with this cortex.", {.required = true}),
       row("faces", &X::faces, one_of(words::edges),

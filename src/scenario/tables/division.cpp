@@ -49,7 +49,7 @@ ScenarioTable division_table() {
   using V = DivisionInput;
   ScenarioTable info{"division.*", "Cell division at a time or above a threshold, of cells with one element each.",
                      "Activity"};
-  const auto row = rows_in(info, &Scenario::divisions);
+  const auto row = key_rows(info, &Scenario::divisions);
   info.rows = {
       row("region", &V::region, anything, "Cells that divide.", {.required = true}),
       row("at_s", &V::at_s, positive, "Time of division (s)."),

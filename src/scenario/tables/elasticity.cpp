@@ -207,7 +207,7 @@ std::vector<ElasticMaterial> elastic_materials(const Scenario& scenario, const O
 
 ScenarioTable elasticity_table() {
   ScenarioTable info{"elasticity", "Constitutive law of cells.", "Passive mechanics"};
-  const auto row = rows_in("elasticity", &Scenario::elasticity);
+  const auto row = key_rows("elasticity", &Scenario::elasticity);
   info.rows = {
       row("model", &E::model, one_of(words::elastic_models),
           "`corotational`: linear isotropic in a frame that rotates with the cell. `neo-hookean`: for soft cells at "
@@ -243,7 +243,7 @@ ScenarioTable region_elasticity_table() {
       "elasticity.*",
       "Different elasticity of a region or layer; default values are those of `[elasticity]`. Tables must not overlap.",
       "Passive mechanics"};
-  const auto row = rows_in(info, &Scenario::region_elasticities);
+  const auto row = key_rows(info, &Scenario::region_elasticities);
   info.rows = {
       row("region", &R::region, anything, "Cells with these values.", {.required = true}),
       row("height_percent", &R::height_percent, between(0, 100),

@@ -24,7 +24,7 @@ const std::vector<std::string_view> built = {"pill", "sphere", "slice", "block",
 /// a scenario of another shape.
 void check_unused_keys(Scenario& scenario, Input& input) {
   const std::string shape = scenario.embryo.shape;
-  for (const Row& row : rows_of("embryo")) {
+  for (const KeyRow& row : rows_of("embryo")) {
     if (row.used_by(shape)) continue;
     const std::string address = fmt::format("embryo.{}", row.key);
     if (input.given_with(address, "embryo.shape"))
@@ -136,7 +136,7 @@ std::int64_t built_cell_count(const EmbryoInput& embryo) {
 
 ScenarioTable embryo_table() {
   ScenarioTable info{"embryo", "Reference geometry of the cell sheet.", "Geometry"};
-  const auto row = rows_in("embryo", &Scenario::embryo);
+  const auto row = key_rows("embryo", &Scenario::embryo);
   info.rows = {
       row("shape", &E::shape, one_of(words::embryo_shapes),
           "Closed embryos: `pill` (spherocylinder), `sphere`, `egg` (polygonal cells), `points` (polygonal cells "

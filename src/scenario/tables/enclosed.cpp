@@ -58,7 +58,7 @@ void build(const Scenario& scenario, const Origin&, Model& model) {
 ScenarioTable enclosed_table() {
   using N = EnclosedInput;
   ScenarioTable info{"enclosed.*", "Volume enclosed by the cell sheet, such as the yolk.", "Surroundings"};
-  const auto row = rows_in(info, &Scenario::enclosed);
+  const auto row = key_rows(info, &Scenario::enclosed);
   info.rows = {
       row("surface", &N::surface, one_of({"basal"}),
           "Closed surface around the volume: the basal surface of the cells."),

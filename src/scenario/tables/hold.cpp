@@ -52,7 +52,7 @@ void build(const Scenario& scenario, const Origin&, Model& model) {
 ScenarioTable hold_table() {
   using H = HoldInput;
   ScenarioTable info{"hold.*", "Fixed nodes (Dirichlet condition).", "Surroundings"};
-  const auto row = rows_in(info, &Scenario::holds);
+  const auto row = key_rows(info, &Scenario::holds);
   info.rows = {
       row("region", &H::region, anything, "Cells whose nodes are fixed.", {.required = true}),
       row("directions", &H::directions, one_of(words::axes), "Fixed directions."),

@@ -107,7 +107,7 @@ void check_expectations(Scenario& scenario, Input& input) {
 
 ScenarioTable stop_table() {
   ScenarioTable info{"stop", "Early end of a run.", "Run"};
-  const auto row = rows_in("stop", &Scenario::stop);
+  const auto row = key_rows("stop", &Scenario::stop);
   info.rows = {
       row("equilibrium_speed_um_per_min", &StopInput::equilibrium_speed_um_per_min, positive,
           "Equilibrium: all nodes are slower (µm/min)."),
@@ -122,7 +122,7 @@ ScenarioTable stop_table() {
 ScenarioTable criterion_table() {
   using K = CriterionInput;
   ScenarioTable info{"stop.*", "Bound on a monitor that ends the run, checked after each step.", "Run"};
-  const auto row = rows_in(info, &Scenario::criteria);
+  const auto row = key_rows(info, &Scenario::criteria);
   info.rows = {
       row("monitor", &K::monitor, anything, "Bounded monitor.", {.required = true}),
       row("above", &K::above, anything, "Met above this value (unit of the monitor's column)."),
@@ -142,7 +142,7 @@ ScenarioTable monitor_table() {
                      "Probe: one value per step in `series.csv`, column `NAME.quantity_unit`; the last is in "
                      "`summary.json`. See [output variables](measures.md).",
                      "Output"};
-  const auto row = rows_in(info, &Scenario::monitors);
+  const auto row = key_rows(info, &Scenario::monitors);
   info.rows = {
       row("quantity", &M::quantity, one_of(quantity_names()), "Recorded quantity.", {.required = true}),
       row("region", &M::region, anything, "Cells measured."),
@@ -182,7 +182,7 @@ ScenarioTable expect_table() {
                      "within_percent = 5 }`, or for a monitor `floor.position_um = { ... }`. Expectations of a "
                      "built-in are not inherited through `base`, nor checked with `--set`.",
                      "Output"};
-  const auto row = rows_in(info, &Scenario::expect);
+  const auto row = key_rows(info, &Scenario::expect);
   info.rows = {
       row("value", &X::value, anything, "Expected value.", {.required = true}),
       row("within", &X::within, not_negative, "Tolerance, in the unit of the value."),

@@ -25,7 +25,7 @@ void describe(const P& input, const Scenario& scenario, Acting& acting) {
 
 ScenarioTable pressure_table() {
   ScenarioTable info{"pressure.*", "Pressure on cell faces.", "Surroundings"};
-  const auto row = rows_in(info, &Scenario::pressures);
+  const auto row = key_rows(info, &Scenario::pressures);
   info.rows = {
       row("region", &P::region, anything, "Cells whose faces carry the pressure.", {.required = true}),
       row("face", &P::faces, one_of(words::pressure_faces), "Loaded face."),

@@ -26,14 +26,14 @@ void drop_unfit_selectors(Scenario& scenario, Input& input) {
   std::set<std::string_view> unfit;
   if (!is_of_grid(shape)) unfit = {"face", "cells_along", "cells_across"};
   if (!is_from_file(shape) && scenario.embryo.cell_arrays.empty()) unfit.insert({"array", "above", "below"});
-  const std::span<const Row> rows = rows_of("region.*");
+  const std::span<const KeyRow> rows = rows_of("region.*");
   for (const auto& named : scenario.regions) {
     const std::string& name = named.first;
-    const auto is_new = [&](const Row& row) {
+    const auto is_new = [&](const KeyRow& row) {
       return input.given_with(fmt::format("region.{}.{}", name, row.key), "embryo.shape");
     };
-    if (std::ranges::any_of(rows, [&](const Row& row) { return !unfit.contains(row.key) && is_new(row); }))
-      for (const Row& row : rows)
+    if (std::ranges::any_of(rows, [&](const KeyRow& row) { return !unfit.contains(row.key) && is_new(row); }))
+      for (const KeyRow& row : rows)
         if (unfit.contains(row.key) && !is_new(row)) reset_to_default(row, scenario, name);
   }
 }
@@ -274,7 +274,7 @@ ScenarioTable region_table() {
   ScenarioTable info{
       "region.*", "Named cell set: cells that meet all given selectors, in the reference state. `all` is predefined.",
       "Geometry"};
-  const auto row = rows_in(info, &Scenario::regions);
+  const auto row = key_rows(info, &Scenario::regions);
   info.rows = {
       row("face", &R::face, one_of(words::sides), "Side of a built embryo."),
       row("cells_along", &R::cells_along, between(1, max_count),

@@ -36,7 +36,7 @@ void check_integrator(const Scenario& scenario, Input& input) {
 ScenarioTable top_table() {
   using S = Scenario;
   ScenarioTable info{"", "Keys at the top of the file.", "General"};
-  const RowsIn<S> row{"", [](S& scenario, const std::string&) -> S& { return scenario; }};
+  const KeyRows<S> row{"", [](S& scenario, const std::string&) -> S& { return scenario; }};
   info.rows = {
       row("format", &S::format, between(1, 1), "Version of the file format."),
       row("title", &S::title, anything, "One line for reports."),
@@ -50,7 +50,7 @@ ScenarioTable top_table() {
 
 ScenarioTable time_table() {
   ScenarioTable info{"time", "Time steps and end of the run.", "Run"};
-  const auto row = rows_in("time", &Scenario::time);
+  const auto row = key_rows("time", &Scenario::time);
   info.rows = {
       row("step_s", &T::step_s, {.low = instant_s, .word_for_none = "adaptive"},
           "Time step (s), or adaptive by local error."),
@@ -87,7 +87,7 @@ ScenarioTable time_table() {
 
 ScenarioTable measure_table() {
   ScenarioTable info{"measure", "What is measured.", "Output"};
-  const auto row = rows_in("measure", &Scenario::measure);
+  const auto row = key_rows("measure", &Scenario::measure);
   info.rows = {
       row("sets", &MeasureInput::sets, one_of(set_names()),
           "Sets of [output variables](measures.md#sets) to measure; `automatic`: those that fit the tissue.",
@@ -98,7 +98,7 @@ ScenarioTable measure_table() {
 
 ScenarioTable furrow_table() {
   ScenarioTable info{"furrow", "Where the furrow is measured.", "Output"};
-  const auto row = rows_in("furrow", &Scenario::furrow);
+  const auto row = key_rows("furrow", &Scenario::furrow);
   info.rows = {
       row("region", &FurrowInput::region, anything,
           "Contractile cells that form the furrow; default the largest contracting region."),
@@ -114,7 +114,7 @@ ScenarioTable furrow_table() {
 ScenarioTable output_table() {
   using O = OutputInput;
   ScenarioTable info{"output", "Files of a run.", "Output"};
-  const auto row = rows_in("output", &Scenario::output);
+  const auto row = key_rows("output", &Scenario::output);
   info.rows = {
       row("frame_every_s", &O::frame_every_s, not_negative,
           "Time between frames (snapshots; s); 0: first and last only."),

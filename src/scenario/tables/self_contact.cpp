@@ -60,7 +60,7 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
 ScenarioTable self_contact_table() {
   using F = SelfContactInput;
   ScenarioTable info{"self_contact", "Contact of the sheet with itself.", "Surroundings"};
-  const auto row = rows_in("self_contact", &Scenario::self_contact);
+  const auto row = key_rows("self_contact", &Scenario::self_contact);
   info.rows = {
       row("surface", &F::surface, one_of(words::contact_surfaces), "Surfaces that resist self-intersection."),
       row("distance_um", &F::distance_um, positive, "Distance at which repulsion starts (µm)."),

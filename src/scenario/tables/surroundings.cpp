@@ -103,7 +103,7 @@ void check_surfaces(const Scenario& scenario, const Tissue& tissue, Errors& erro
 
 ScenarioTable volume_table() {
   ScenarioTable info{"volume", "Conservation of cell volume.", "Passive mechanics"};
-  const auto row = rows_in("volume", &Scenario::volume);
+  const auto row = key_rows("volume", &Scenario::volume);
   info.rows = {
       row("method", &VolumeInput::method, one_of(words::volume_methods),
           "`coupled`: equality constraints in each step. `projection`: the paper's projection after each step, so that "
@@ -121,7 +121,7 @@ ScenarioTable volume_table() {
 
 ScenarioTable vitelline_table() {
   ScenarioTable info{"vitelline", "Vitelline membrane.", "Surroundings"};
-  const auto row = rows_in("vitelline", &Scenario::vitelline);
+  const auto row = key_rows("vitelline", &Scenario::vitelline);
   info.rows = {
       row("enabled", &VitellineInput::enabled, anything,
           "Rigid membrane around a closed embryo (unilateral constraint); default false for a block, sheet, surface, "
@@ -141,7 +141,7 @@ ScenarioTable dynamics_table() {
   using D = DynamicsInput;
   ScenarioTable info{"dynamics", "Drag, viscosity and inertia; drag and density must not both be 0.",
                      "Passive mechanics"};
-  const auto row = rows_in("dynamics", &Scenario::dynamics);
+  const auto row = key_rows("dynamics", &Scenario::dynamics);
   info.rows = {
       row("surface_drag_Pa_s_per_um", &D::surface_drag_Pa_s_per_um, not_negative,
           "Viscous drag on apical and basal faces (Pa s/µm); sets the time scale."),

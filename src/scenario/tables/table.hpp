@@ -33,13 +33,13 @@ using Errors = std::vector<Diagnostic>;
 
 /// Makes rows of one table, whose keys fill members of a `Table` or of its base.
 template <class Table>
-struct RowsIn {
+struct KeyRows {
   std::string_view path;
   std::function<Table&(Scenario&, const std::string& name)> table;
 
   template <class Base, class T>
-  Row operator()(std::string_view key, T Base::*field, Allowed allowed, std::string_view meaning,
-                 RowOptions options = {}) const {
+  KeyRow operator()(std::string_view key, T Base::*field, Allowed allowed, std::string_view meaning,
+                    KeyOptions options = {}) const {
     const auto slot = [=, table = table](Scenario& scenario, const std::string& name) -> Slot {
       return &(table(scenario, name).*field);
     };
@@ -48,8 +48,8 @@ struct RowsIn {
 
   /// Makes a row of an inner table.
   template <class Base, class Inner, class T>
-  Row operator()(std::string_view key, Inner Base::*inner, T Inner::*field, Allowed allowed, std::string_view meaning,
-                 RowOptions options = {}) const {
+  KeyRow operator()(std::string_view key, Inner Base::*inner, T Inner::*field, Allowed allowed,
+                    std::string_view meaning, KeyOptions options = {}) const {
     const auto slot = [=, table = table](Scenario& scenario, const std::string& name) -> Slot {
       return &(table(scenario, name).*inner.*field);
     };
@@ -58,13 +58,13 @@ struct RowsIn {
 };
 
 template <class Table>
-RowsIn<Table> rows_in(std::string_view path, Table Scenario::*table) {
+KeyRows<Table> key_rows(std::string_view path, Table Scenario::*table) {
   return {path, [=](Scenario& scenario, const std::string&) -> Table& { return scenario.*table; }};
 }
 
 /// Also sets the names of the tables, and the region that each refers to if it has one.
 template <class Table>
-RowsIn<Table> rows_in(ScenarioTable& info, Named<Table> tables) {
+KeyRows<Table> key_rows(ScenarioTable& info, Named<Table> tables) {
   info.names = [=](const Scenario& scenario) { return keys_of(scenario.*tables); };
   if constexpr (requires(Table table) { table.region; })
     info.regions = [=, stem = info.stem()](const Scenario& scenario, const TakeRegion& take) {
@@ -92,7 +92,7 @@ Allowed one_of(const std::array<Word<Meaning>, n>& table) {
 
 /// Adds the keys of an activity time course; `keys`: of times in s and in min, and of activities.
 template <class Table, class Base>
-void add_program(std::vector<Row>& rows, const RowsIn<Table>& table, ProgramInput Base::*program,
+void add_program(std::vector<KeyRow>& rows, const KeyRows<Table>& table, ProgramInput Base::*program,
                  const std::array<std::string_view, 3>& keys = {"program.time_s", "program.time_min",
                                                                 "program.activity"}) {
   rows.push_back(table(keys[0], program, &ProgramInput::time_s, anything,
@@ -103,13 +103,13 @@ void add_program(std::vector<Row>& rows, const RowsIn<Table>& table, ProgramInpu
 }
 
 /// Adds the keys of amplitude factors (profile and variation) of tables that act.
-void add_strengths(std::vector<Row>& rows, const RowsIn<ActingInput>& table);
+void add_strengths(std::vector<KeyRow>& rows, const KeyRows<ActingInput>& table);
 
 /// Adds the keys of amplitude factors, activation wave and pulses.
-void add_pattern(std::vector<Row>& rows, const RowsIn<ActingInput>& table);
+void add_pattern(std::vector<KeyRow>& rows, const KeyRows<ActingInput>& table);
 
 template <class Table>
-RowsIn<ActingInput> acting(const RowsIn<Table>& rows) {
+KeyRows<ActingInput> acting(const KeyRows<Table>& rows) {
   return {rows.path, rows.table};
 }
 

@@ -23,9 +23,9 @@ const std::vector<double>& column(const NumberedTable& table, const char* name, 
 }
 
 /// Rows by the numbers that name them.
-class Rows {
+class RowsByNumber {
  public:
-  Rows(const NumberedTable& table, const char* of) : of_(of) {
+  RowsByNumber(const NumberedTable& table, const char* of) : of_(of) {
     for (std::size_t row = 0; row < table.index.size(); ++row)
       if (!rows_.emplace(table.index[row], row).second)
         throw MeshError("the table of {} has two rows {}", of, table.index[row]);
@@ -150,7 +150,7 @@ PolygonFile polygons_of(const VertexModelTables& tables) {
 
   const auto &from = column(tables.edges, "srce", "edges"), &to = column(tables.edges, "trgt", "edges"),
              &face = column(tables.edges, "face", "edges");
-  const Rows vertex_rows(tables.vertices, "vertices"), face_rows(tables.faces, "faces");
+  const RowsByNumber vertex_rows(tables.vertices, "vertices"), face_rows(tables.faces, "faces");
   std::vector<std::vector<HalfEdge>> edges(tables.faces.index.size());
   for (std::size_t e = 0; e < from.size(); ++e)
     edges[face_rows.row(face[e])].push_back({vertex_rows.row(from[e]), vertex_rows.row(to[e])});
