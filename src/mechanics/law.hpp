@@ -79,7 +79,7 @@ class TangentSink {
 
   /// Whether several threads may add blocks for different nodes at once; blocks of a hanging node go to the nodes that
   /// carry it.
-  [[nodiscard]] virtual bool takes_apart() const { return false; }
+  [[nodiscard]] virtual bool accepts_concurrent_blocks() const { return false; }
 };
 
 /// Groups of nodes whose tangent blocks may be non-zero: the sparsity pattern of a law.

@@ -178,13 +178,13 @@ struct ContractionInput : ActingInput {
 
 /// Shape-dependent activation: a threshold on the cell's own shape starts its programs.
 struct TriggerInput {
-  std::string measure;                 // shape measure (OwnMeasure); empty: none
+  std::string measure;                 // shape measure (ShapeMeasure); empty: none
   std::optional<double> below, above;  // one of them
 };
 
 /// Shape-dependent tension: a factor that follows the cell's own shape.
 struct FollowInput {
-  std::string measure;  // shape measure (OwnMeasure); empty: none
+  std::string measure;  // shape measure (ShapeMeasure); empty: none
   std::optional<double> from, to;
 };
 

@@ -12,7 +12,7 @@
 #include "measure/monitor.hpp"
 #include "measure/stop_rule.hpp"
 #include "mechanics/active/cell_pattern.hpp"
-#include "mechanics/active/own_state.hpp"
+#include "mechanics/active/shape_activation.hpp"
 #include "scenario/scenario.hpp"
 #include "solver/make_stepper.hpp"
 #include "tissue/prisms.hpp"
@@ -121,11 +121,11 @@ inline constexpr auto delay_starts = std::to_array<Word<StartDelay::From>>({{"mi
                                                                             {"high", StartDelay::From::high}});
 
 // [cortex.NAME], in addition to those above.
-inline constexpr auto own_measures =
-    std::to_array<Word<OwnMeasure>>({{"apical_area_ratio", OwnMeasure::apical_area_ratio},
-                                     {"basal_area_ratio", OwnMeasure::basal_area_ratio},
-                                     {"height_ratio", OwnMeasure::height_ratio},
-                                     {"apical_stretch", OwnMeasure::apical_stretch}});
+inline constexpr auto shape_measures =
+    std::to_array<Word<ShapeMeasure>>({{"apical_area_ratio", ShapeMeasure::apical_area_ratio},
+                                       {"basal_area_ratio", ShapeMeasure::basal_area_ratio},
+                                       {"height_ratio", ShapeMeasure::height_ratio},
+                                       {"apical_stretch", ShapeMeasure::apical_stretch}});
 
 // [pressure.NAME]: whether the face is apical.
 inline constexpr auto pressure_faces = std::to_array<Word<bool>>({{"apical", true}, {"basal", false}});

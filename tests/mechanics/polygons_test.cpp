@@ -1,7 +1,7 @@
 // Laws on cells that are polygons, and on tissues with periods.
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/active/cortex.hpp"
-#include "mechanics/active/own_state.hpp"
+#include "mechanics/active/shape_activation.hpp"
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "mechanics/contact/self_contact.hpp"
@@ -165,13 +165,14 @@ TEST_P(LawsOnPolygons, OwnStateIsThatOfTheWholeCell) {
   const Tissue flat = tissue_from_prisms(irregular_polygons(4, 4, 8, 20, 0.1, 3), GetParam(), 1);
   Vectors x = flat.rest_positions;
   for (Vec3& one : x) one = stretch * one;
-  const auto expect_all = [&](OwnMeasure measure, double expected) {
-    const OwnState state(flat, {.kind = OwnStateRule::Kind::starts_below, .measure = measure, .threshold = 1});
+  const auto expect_all = [&](ShapeMeasure measure, double expected) {
+    const ShapeActivation state(flat,
+                                {.kind = ShapeActivationRule::Kind::starts_below, .measure = measure, .threshold = 1});
     for (const double ratio : state.ratios(x)) EXPECT_NEAR(ratio, expected, 1e-12);
   };
-  expect_all(OwnMeasure::apical_stretch, 1.3);
-  expect_all(OwnMeasure::apical_area_ratio, 1.3 * 0.8);
-  expect_all(OwnMeasure::height_ratio, 1.1);
+  expect_all(ShapeMeasure::apical_stretch, 1.3);
+  expect_all(ShapeMeasure::apical_area_ratio, 1.3 * 0.8);
+  expect_all(ShapeMeasure::height_ratio, 1.1);
 }
 
 TEST_P(LawsOnPolygons, ContactKnowsThem) {

@@ -240,8 +240,8 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
     expect_words(table, "delay.axis", words::delay_axes);
     expect_words(table, "delay.from", words::delay_starts);
   }
-  expect_words("cortex.*", "trigger.measure", words::own_measures);
-  expect_words("cortex.*", "follow.measure", words::own_measures);
+  expect_words("cortex.*", "trigger.measure", words::shape_measures);
+  expect_words("cortex.*", "follow.measure", words::shape_measures);
   expect_words("enclosed.*", "volume", words::enclosed_states);
   expect_words("self_contact", "surface", words::contact_surfaces);
   expect_words("hold.*", "directions", words::axes);

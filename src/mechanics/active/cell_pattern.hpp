@@ -140,7 +140,7 @@ class GivenActivities {
     return given_[cell.index()];
   }
 
-  [[nodiscard]] std::span<const double> numbers() const { return given_; }
+  [[nodiscard]] std::span<const double> internal() const { return given_; }
   /// Return activities after a division; daughters inherit from the mother cell.
   [[nodiscard]] std::vector<double> after_division(const Division& division) const {
     return given_.empty() ? std::vector<double>() : inherited(division, std::vector(given_.begin(), given_.end()));

@@ -59,7 +59,7 @@ Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kerne
       pattern_(std::move(pattern)),
       faces_(acting_faces(tissue, rule_.side, pattern_)),
       stretches_(faces_.size(), 1),
-      own_(tissue, rule_.own) {
+      activation_(tissue, rule_.activation) {
   for (const Face& face : faces_) {
     elements_.push_back(face.nodes);
     rest_areas_.push_back(area_at_rest(tissue, face));
@@ -95,20 +95,20 @@ double Cortex::rest_area_before(std::size_t face, const Step& step) const {
 double Cortex::activity(CellId cell, double time_s, std::span<const double> internal) const {
   const double part = pattern_.remaining(cell, time_s);
   const Memory remembered = memory(internal);
-  if (const auto told = remembered.given.of(cell)) return part * *told;
+  if (const auto given = remembered.given.of(cell)) return part * *given;
   const double delay_s = pattern_.delays_s[cell.index()], factor = part * pattern_.pulse(cell, time_s);
-  if (!own_.is_used()) return factor * rule_.program.delayed_at(delay_s, time_s);
-  const double own = remembered.own[cell.index()];
-  if (!own_.starts()) return factor * own * rule_.program.delayed_at(delay_s, time_s);
-  return own == OwnState::not_yet ? 0 : factor * rule_.program.delayed_at(own, time_s);
+  if (!activation_.is_used()) return factor * rule_.program.delayed_at(delay_s, time_s);
+  const double state = remembered.activation[cell.index()];
+  if (!activation_.starts()) return factor * state * rule_.program.delayed_at(delay_s, time_s);
+  return state == ShapeActivation::not_yet ? 0 : factor * rule_.program.delayed_at(state, time_s);
 }
 
 // The factor on its stiffness.
 double Cortex::stiffening(CellId cell, const Step& step) const {
   const double part = pattern_.remaining(cell, step.end_time_s);
-  if (!own_.starts()) return part * rule_.stiffness_program.at(step.end_time_s);
-  const double own = memory(step.internal).own[cell.index()];
-  return part * rule_.stiffness_program.at(own == OwnState::not_yet ? 0 : step.end_time_s - own);
+  if (!activation_.starts()) return part * rule_.stiffness_program.at(step.end_time_s);
+  const double start_s = memory(step.internal).activation[cell.index()];
+  return part * rule_.stiffness_program.at(start_s == ShapeActivation::not_yet ? 0 : step.end_time_s - start_s);
 }
 
 // A number of a cell times its strength; of a wall the mean of those of its two cells; the tissue's share of that.
@@ -191,7 +191,7 @@ EnergyFlow Cortex::energy_flow(const CompletedStep& made) const {
 
 std::vector<double> Cortex::areas(std::span<const Vec3> positions) const {
   std::vector<double> areas(places());
-  const FaceArrays at{batches_.data(), faces_.size(), numbers(positions), nullptr, nullptr, false};
+  const FaceArrays at{batches_.data(), faces_.size(), components(positions), nullptr, nullptr, false};
   chunks_.for_batches(
       [&](std::size_t first, std::size_t last) { kernels().write_areas(at, first, last, areas.data()); });
   areas.resize(faces_.size());
@@ -206,7 +206,7 @@ Cortex::Pull Cortex::kernel_arrays(const Step& step) const {
     pull.of_tensions[f] = response.tension;
     pull.of_slopes[f] = response.slope;
   });
-  static_cast<FaceArrays&>(pull) = {batches_.data(),         faces_.size(),         numbers(step.positions),
+  static_cast<FaceArrays&>(pull) = {batches_.data(),         faces_.size(),         components(step.positions),
                                     pull.of_tensions.data(), pull.of_slopes.data(), step.semidefinite_tangent};
   return pull;
 }
@@ -229,14 +229,14 @@ Cortex::Memory Cortex::memory(std::span<const double> internal) const {
     return part;
   };
   const auto areas = take(flows(), faces_.size()), areas_before = take(flows(), faces_.size());
-  const auto own = take(own_.is_used(), pattern_.cells.size());
-  return {areas, areas_before, own, GivenActivities(internal)};
+  const auto activation = take(activation_.is_used(), pattern_.cells.size());
+  return {areas, areas_before, activation, GivenActivities(internal)};
 }
 
 std::vector<double> Cortex::first_internal(const Tissue& tissue) const {
   std::vector<double> internal;
   if (flows()) internal.assign(2 * faces_.size(), 1);
-  return joined(std::move(internal), own_.numbers(tissue.rest_positions, 0, {}));
+  return joined(std::move(internal), activation_.internal(tissue.rest_positions, 0, {}));
 }
 
 std::vector<double> Cortex::next_internal(const Step& step) const {
@@ -249,8 +249,9 @@ std::vector<double> Cortex::next_internal(const Step& step) const {
       internal[f] = (rest_area_before(f, step) + r * internal[f]) / ((1 + r) * rest_areas_[f]);
     internal = joined(std::move(internal), before.areas);
   }
-  if (own_.is_used()) internal = joined(std::move(internal), own_.numbers(step.positions, step.end_time_s, before.own));
-  return joined(std::move(internal), before.given.numbers());
+  if (activation_.is_used())
+    internal = joined(std::move(internal), activation_.internal(step.positions, step.end_time_s, before.activation));
+  return joined(std::move(internal), before.given.internal());
 }
 
 // A face comes from the one with its nodes, else from all between its cells. A face between daughters comes from none.
@@ -342,19 +343,20 @@ std::vector<double> Cortex::internal_after_division(std::span<const double> inte
         after.push_back(from.empty() ? 1 : origins.mean(from, areas));
       }
   }
-  if (own_.is_used())
-    after = joined(std::move(after), inherited(division, std::vector(before.own.begin(), before.own.end())));
+  if (activation_.is_used())
+    after =
+        joined(std::move(after), inherited(division, std::vector(before.activation.begin(), before.activation.end())));
   return joined(std::move(after), before.given.after_division(division));
 }
 
 std::vector<double> Cortex::program_points_s() const {
-  if (own_.starts()) return pattern_.with_ablations({});  // start times of cells are unknown in advance
+  if (activation_.starts()) return pattern_.with_ablations({});  // start times of cells are unknown in advance
   return pattern_.with_ablations(
       joined(rule_.stiffness_program.times_s(), rule_.program.delayed_points_s(pattern_.delays_s)));
 }
 
 std::vector<double> Cortex::program_jumps_s() const {
-  if (own_.starts()) return pattern_.with_ablations({});
+  if (activation_.starts()) return pattern_.with_ablations({});
   return pattern_.with_ablations(
       joined(rule_.stiffness_program.jumps_s(), rule_.program.delayed_jumps_s(pattern_.delays_s)));
 }

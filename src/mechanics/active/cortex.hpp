@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "mechanics/active/cell_pattern.hpp"
-#include "mechanics/active/own_state.hpp"
 #include "mechanics/active/program.hpp"
+#include "mechanics/active/shape_activation.hpp"
 #include "mechanics/kernels/batch_law.hpp"
 #include "tissue/faces.hpp"
 
@@ -19,15 +19,15 @@ namespace plica {
 /// Parameters of a cortex, as in [cortex.NAME] of the scenario.
 struct CortexRule {
   CellSide side = CellSide::apical;
-  double tension = 0;              // gamma, nN/um
-  double saturation = 0;           // A_s / A_r
-  double stiffness = 0;            // k, nN/um
-  double compression_ratio = 1;    // stiffness in compression / in extension; 0: slack
-  double crowding = 0;             // c, nN/um
-  double relaxation_s = 0;         // tau; 0: no relaxation
-  Program program = {};            // time course of gamma; starts after the delay of the cell
-  Program stiffness_program = {};  // time course of k
-  OwnStateRule own = {};           // shape-dependent start of both programs, or factor on the tension
+  double tension = 0;                   // gamma, nN/um
+  double saturation = 0;                // A_s / A_r
+  double stiffness = 0;                 // k, nN/um
+  double compression_ratio = 1;         // stiffness in compression / in extension; 0: slack
+  double crowding = 0;                  // c, nN/um
+  double relaxation_s = 0;              // tau; 0: no relaxation
+  Program program = {};                 // time course of gamma; starts after the delay of the cell
+  Program stiffness_program = {};       // time course of k
+  ShapeActivationRule activation = {};  // shape-dependent start of both programs, or factor on the tension
 };
 
 /// Cortex law. Cell strengths scale all terms. A lateral face is shared by two cells and takes the mean of their
@@ -99,7 +99,7 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   // An internal state, in its order. Parts that are not used are empty.
   struct Memory {
     std::span<const double> areas, areas_before;  // faces; stress-free / reference, at the beginning of both steps
-    std::span<const double> own;                  // cells; OwnState
+    std::span<const double> activation;           // cells; ShapeActivation
     GivenActivities given;
   };
   [[nodiscard]] Memory memory(std::span<const double> internal) const;
@@ -114,7 +114,7 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   std::vector<double> rest_areas_;  // faces; um^2: A_r
   std::vector<double> stretches_;   // faces; A_r / area in the undeformed tissue: 1 unless born after it
   std::vector<double> strengths_;   // faces
-  OwnState own_;
+  ShapeActivation activation_;
   std::vector<FaceBatch> batches_;
 };
 

@@ -58,7 +58,7 @@ CellVolumes CellVolumes::grown(const Tissue& tissue) const {
 VolumeArrays CellVolumes::kernel_arrays(std::span<const Vec3> positions, std::span<const double> pressures) const {
   return {.batches = batches_.data(),
           .elements = elements_.size(),
-          .positions = numbers(positions),
+          .positions = components(positions),
           .pressures = pressures.data(),
           .bulk_moduli = nullptr,
           .semidefinite_tangent = false};
@@ -114,22 +114,23 @@ std::vector<double> CellVolumes::multipliers_after_division(std::span<const doub
 
 void CellVolumes::gradients(std::span<const Vec3> positions, std::span<Vec3> of_elements) const {
   const VolumeArrays at = kernel_arrays(positions, {});
-  chunks_.for_batches(
-      [&](std::size_t first, std::size_t last) { kernels_->write_gradients(at, first, last, numbers(of_elements)); });
+  chunks_.for_batches([&](std::size_t first, std::size_t last) {
+    kernels_->write_gradients(at, first, last, components(of_elements));
+  });
 }
 
 void CellVolumes::add_forces(std::span<const Vec3> positions, std::span<const double> pressures,
                              std::span<Vec3> forces) const {
   const VolumeArrays at = kernel_arrays(positions, pressures);
   chunks_.for_batches(
-      [&](std::size_t first, std::size_t last) { kernels_->add_forces(at, first, last, numbers(forces)); });
+      [&](std::size_t first, std::size_t last) { kernels_->add_forces(at, first, last, components(forces)); });
 }
 
 void CellVolumes::add_tangent_product(std::span<const Vec3> positions, std::span<const double> pressures,
                                       std::span<const Vec3> direction, std::span<Vec3> product) const {
   const VolumeArrays at = kernel_arrays(positions, pressures);
   chunks_.for_batches([&](std::size_t first, std::size_t last) {
-    kernels_->add_product(at, first, last, numbers(direction), numbers(product));
+    kernels_->add_product(at, first, last, components(direction), components(product));
   });
 }
 
@@ -140,7 +141,7 @@ void CellVolumes::add_tangent(std::span<const Vec3> positions, std::span<const d
         const double pressure = pressures[element_cell_[e].index()];
         add_volume_hessian(elements_[e], gather(positions, elements_[e]), -pressure, tangent);
       },
-      tangent.takes_apart());
+      tangent.accepts_concurrent_blocks());
 }
 
 Dilatation::Dilatation(const Tissue& tissue, std::vector<double> bulk_moduli, bool cells_are_exact, Kernels kernels)
@@ -167,7 +168,7 @@ Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are
 VolumeArrays Dilatation::kernel_arrays(const Step& step) const {
   return {.batches = batches_.data(),
           .elements = elements_.size(),
-          .positions = numbers(step.positions),
+          .positions = components(step.positions),
           .pressures = nullptr,
           .bulk_moduli = bulk_moduli_.data(),
           .semidefinite_tangent = step.semidefinite_tangent};
@@ -195,7 +196,7 @@ void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
           for (int j = 0; j <= i; ++j)
             tangent.add_block(nodes[i], nodes[j], bulk_modulus / rest_volume * gradient[i] * gradient[j].transpose());
       },
-      tangent.takes_apart());
+      tangent.accepts_concurrent_blocks());
 }
 
 std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Division& division,

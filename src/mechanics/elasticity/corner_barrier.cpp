@@ -137,7 +137,7 @@ void CornerBarrier::add_tangent(const Step& step, TangentSink& tangent) const {
             }
         });
       },
-      tangent.takes_apart());
+      tangent.accepts_concurrent_blocks());
 }
 
 NodeGroups CornerBarrier::node_groups(std::span<const double> /*internal*/) const {

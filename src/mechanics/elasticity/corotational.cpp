@@ -76,9 +76,9 @@ CorotationalArrays Corotational::kernel_arrays(const Step& step) const {
   return {.batches = batches_.data(),
           .viscous_batches = viscous_batches_.empty() ? nullptr : viscous_batches_.data(),
           .elements = elements_.size(),
-          .positions = numbers(step.positions),
-          .previous_positions = numbers(step.previous_positions),
-          .earlier_positions = numbers(step.earlier_positions),
+          .positions = components(step.positions),
+          .previous_positions = components(step.previous_positions),
+          .earlier_positions = components(step.earlier_positions),
           .ahead = step.ahead,
           .rate = 1 / step.rate_s,
           .semidefinite_tangent = step.semidefinite_tangent};

@@ -111,7 +111,7 @@ NeoHookeanArrays NeoHookean::kernel_arrays(const Step& step) const {
   return {.batches = batches_.data(),
           .flows = flows_ ? flow_batches_.data() : nullptr,
           .elements = elements_.size(),
-          .positions = numbers(step.positions),
+          .positions = components(step.positions),
           .semidefinite_tangent = step.semidefinite_tangent,
           .flowed = now.data(),
           .flowed_earlier = earlier.data(),

@@ -219,7 +219,7 @@ void TurningElements::add_tangent(const Step& step, TangentSink& tangent) const 
         K += G.transpose().lazyProduct(right);
         add(element, f.R, 0.5 * (K + K.transpose()));  // removes rounding asymmetry
       },
-      tangent.takes_apart());
+      tangent.accepts_concurrent_blocks());
 }
 
 NodeGroups TurningElements::node_groups(std::span<const double> /*internal*/) const {

@@ -26,12 +26,12 @@ class BatchLaw : public Law {
   void add_forces(const Step& step, std::span<Vec3> forces) const final {
     const auto& at = self().kernel_arrays(step);
     chunks_.for_batches(
-        [&](std::size_t first, std::size_t last) { kernels().add_forces(at, first, last, numbers(forces)); });
+        [&](std::size_t first, std::size_t last) { kernels().add_forces(at, first, last, components(forces)); });
   }
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const final {
     const auto& at = self().kernel_arrays(step);
     chunks_.for_batches([&](std::size_t first, std::size_t last) {
-      kernels().add_product(at, first, last, numbers(direction), numbers(product));
+      kernels().add_product(at, first, last, components(direction), components(product));
     });
   }
   void add_tangent(const Step& step, TangentSink& tangent) const override {
@@ -52,7 +52,7 @@ class BatchLaw : public Law {
         [&](std::size_t first, std::size_t last) {
           for (std::size_t batch = first; batch < last; ++batch) add_batch(batch);
         },
-        tangent.takes_apart());
+        tangent.accepts_concurrent_blocks());
   }
   [[nodiscard]] NodeGroups node_groups(std::span<const double> /*internal*/) const final {
     NodeGroups groups;

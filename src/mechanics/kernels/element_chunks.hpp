@@ -21,8 +21,10 @@ namespace plica {
 struct Tissue;
 
 /// View of vectors as x y z each, for kernels.
-inline const double* numbers(std::span<const Vec3> vectors) { return reinterpret_cast<const double*>(vectors.data()); }
-inline double* numbers(std::span<Vec3> vectors) { return reinterpret_cast<double*>(vectors.data()); }
+inline const double* components(std::span<const Vec3> vectors) {
+  return reinterpret_cast<const double*>(vectors.data());
+}
+inline double* components(std::span<Vec3> vectors) { return reinterpret_cast<double*>(vectors.data()); }
 static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
 class ElementChunks {

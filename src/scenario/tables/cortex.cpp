@@ -34,7 +34,7 @@ void check_effect(const std::string& table, const CortexInput& cortex, Input& in
         "stiffness_mN_per_m");
 }
 
-void check_own_state(const std::string& table, const CortexInput& cortex, Input& input) {
+void check_shape_activation(const std::string& table, const CortexInput& cortex, Input& input) {
   const auto& [measure, below, above] = cortex.trigger;
   const FollowInput& follow = cortex.follow;
   for (const std::string& part : {table, table + ".trigger", table + ".follow"})
@@ -43,7 +43,7 @@ void check_own_state(const std::string& table, const CortexInput& cortex, Input&
     if (input.sound(table + key)) input.report(table + key, problem, remedy);
   };
   const std::string measures =
-      fmt::format("set measure to one of: {}", fmt::join(words_of(words::own_measures), " | "));
+      fmt::format("set measure to one of: {}", fmt::join(words_of(words::shape_measures), " | "));
   if (measure.empty() && (below || above)) report(".trigger.measure", "is missing", measures);
   if (!measure.empty() && below.has_value() == above.has_value())
     report(below ? ".trigger.above" : ".trigger.below", below ? "conflicts with below" : "is missing",
@@ -66,20 +66,20 @@ void check_cortices(Scenario& scenario, Input& input) {
     check_acting(table, it, scenario.time, input);
     check_program(table, it.stiffness_program, input, "stiffness_program");
     check_effect(table, it, input);
-    check_own_state(table, it, input);
+    check_shape_activation(table, it, input);
   }
 }
 
-OwnStateRule make_own_state(const CortexInput& input) {
-  OwnStateRule rule;
+ShapeActivationRule make_shape_activation(const CortexInput& input) {
+  ShapeActivationRule rule;
   const auto& [measure, below, above] = input.trigger;
   if (!measure.empty()) {
-    rule.kind = below ? OwnStateRule::Kind::starts_below : OwnStateRule::Kind::starts_above;
-    rule.measure = meaning_of(words::own_measures, measure);
+    rule.kind = below ? ShapeActivationRule::Kind::starts_below : ShapeActivationRule::Kind::starts_above;
+    rule.measure = meaning_of(words::shape_measures, measure);
     rule.threshold = below ? *below : *above;
   } else if (!input.follow.measure.empty()) {
-    rule.kind = OwnStateRule::Kind::follows;
-    rule.measure = meaning_of(words::own_measures, input.follow.measure);
+    rule.kind = ShapeActivationRule::Kind::follows;
+    rule.measure = meaning_of(words::shape_measures, input.follow.measure);
     rule.from = *input.follow.from;
     rule.to = *input.follow.to;
   }
@@ -99,7 +99,7 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
     rule.relaxation_s = input.relaxation_s.value_or(0);
     rule.program = make_program(input.program);
     rule.stiffness_program = make_program(input.stiffness_program);
-    rule.own = make_own_state(input);
+    rule.activation = make_shape_activation(input);
     const std::string table = "cortex." + name;
     CellPattern pattern = make_ablated_pattern(scenario, table, input, origin);
     model.laws.push_back(std::make_unique<Cortex>(model.tissue, std::move(pattern), std::move(rule)));
@@ -148,11 +148,11 @@ ScenarioTable cortex_table() {
               {"stiffness_program.time_s", "stiffness_program.time_min", "stiffness_program.activity"});
   info.rows.insert(info.rows.end(),
                    {
-                       row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::own_measures),
+                       row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::shape_measures),
                            "Measure that starts the time courses."),
                        row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
                        row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
-                       row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::own_measures),
+                       row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::shape_measures),
                            "Measure that scales the active tension."),
                        row("follow.from", &X::follow, &FollowInput::from, not_negative,
                            "Value at which, and before which, the factor is 0."),

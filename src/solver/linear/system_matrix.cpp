@@ -137,7 +137,7 @@ void SystemMatrix::assemble(const Model& model, const ObstacleContacts& contacts
 
 void SystemMatrix::add_constraint_stiffness(const Model& model, std::span<const Vec3> positions,
                                             std::span<const double> weights) {
-  jacobian_.for_parts(model, positions, takes_apart(),
+  jacobian_.for_parts(model, positions, accepts_concurrent_blocks(),
                       [&](std::size_t row, std::span<const NodeId> nodes, std::span<const Vec3> gradients) {
                         // sum_p n (dc_p)^2 >= (sum_p dc_p)^2, of n parts.
                         const double weight = weights[row] * jacobian_.part_count(row);

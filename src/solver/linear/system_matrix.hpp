@@ -42,7 +42,7 @@ class SystemMatrix final : public TangentSink {
   /// law, if it adds a block outside its pattern.
   void assemble(const Model& model, const ObstacleContacts& contacts, const Step& step, const Iterate& at);
   void add_block(NodeId row, NodeId column, const Mat3& block) override;
-  [[nodiscard]] bool takes_apart() const override { return true; }
+  [[nodiscard]] bool accepts_concurrent_blocks() const override { return true; }
   void take_gradients(const Model& model, std::span<const Vec3> positions) { jacobian_.update(model, positions); }
   [[nodiscard]] const ConstraintJacobian& jacobian() const { return jacobian_; }
 

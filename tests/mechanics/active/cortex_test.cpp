@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "mechanics/active/own_state.hpp"
+#include "mechanics/active/shape_activation.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
 #include "scenario/load.hpp"
@@ -267,31 +267,31 @@ TEST(Cortex, AWallBetweenDaughtersBeginsAtItsArea) {
   }
 }
 
-using Kind = OwnStateRule::Kind;
+using Kind = ShapeActivationRule::Kind;
 
 // Three cells in a row, apices on top.
 Tissue row() { return build_block({.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}}); }
 
-TEST(OwnState, MeasuresAreOverThoseAtRest) {
+TEST(ShapeActivation, MeasuresAreOverThoseAtRest) {
   const Tissue tissue = row();
   Vectors positions = tissue.rest_positions;
   for (Vec3& x : positions) x = Vec3(x.x() * (x.z() > 0 ? 0.5 : 2), x.y(), 1.25 * x.z());
-  const auto middle = [&](OwnMeasure measure, std::span<const Vec3> at) {
-    return OwnState(tissue, {Kind::follows, measure}).ratios(at)[1];
+  const auto middle = [&](ShapeMeasure measure, std::span<const Vec3> at) {
+    return ShapeActivation(tissue, {Kind::follows, measure}).ratios(at)[1];
   };
-  for (const OwnMeasure measure : {OwnMeasure::apical_area_ratio, OwnMeasure::basal_area_ratio,
-                                   OwnMeasure::height_ratio, OwnMeasure::apical_stretch})
+  for (const ShapeMeasure measure : {ShapeMeasure::apical_area_ratio, ShapeMeasure::basal_area_ratio,
+                                     ShapeMeasure::height_ratio, ShapeMeasure::apical_stretch})
     EXPECT_DOUBLE_EQ(middle(measure, tissue.rest_positions), 1);
-  EXPECT_DOUBLE_EQ(middle(OwnMeasure::apical_area_ratio, positions), 0.5);
-  EXPECT_DOUBLE_EQ(middle(OwnMeasure::basal_area_ratio, positions), 2);
+  EXPECT_DOUBLE_EQ(middle(ShapeMeasure::apical_area_ratio, positions), 0.5);
+  EXPECT_DOUBLE_EQ(middle(ShapeMeasure::basal_area_ratio, positions), 2);
   const double slanted = std::hypot(50, 15) / 40;  // of its edges: 10 um out at the base became 20, at the apex 5
-  EXPECT_NEAR(middle(OwnMeasure::height_ratio, positions), slanted, 1e-12);
+  EXPECT_NEAR(middle(ShapeMeasure::height_ratio, positions), slanted, 1e-12);
 }
 
 // However it is turned, and along no axis: a simple shear by s stretches by (s + sqrt(s^2 + 4))/2.
-TEST(OwnState, StretchIsAlongTheDirectionOfTheLargest) {
+TEST(ShapeActivation, StretchIsAlongTheDirectionOfTheLargest) {
   const Tissue tissue = row();
-  const OwnState state(tissue, {Kind::follows, OwnMeasure::apical_stretch});
+  const ShapeActivation state(tissue, {Kind::follows, ShapeMeasure::apical_stretch});
   const double s = 0.6;
   const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   Vectors positions = tissue.rest_positions;
@@ -299,28 +299,29 @@ TEST(OwnState, StretchIsAlongTheDirectionOfTheLargest) {
   for (const double stretch : state.ratios(positions)) EXPECT_NEAR(stretch, (s + std::sqrt(s * s + 4)) / 2, 1e-12);
 }
 
-TEST(OwnState, StartsOnceAndRemembersWhen) {
+TEST(ShapeActivation, StartsOnceAndRemembersWhen) {
   const Tissue tissue = row();
-  const OwnState state(tissue, {.kind = Kind::starts_below, .threshold = 0.8});
+  const ShapeActivation state(tissue, {.kind = Kind::starts_below, .threshold = 0.8});
   Vectors smaller = tissue.rest_positions;
   for (Vec3& x : smaller)
     if (x.x() > 20) x.x() -= 8;  // the last cell's apex has 0.6 of its area
-  const double no = OwnState::not_yet;
-  const std::vector<double> before = state.numbers(tissue.rest_positions, 0, {});
+  const double no = ShapeActivation::not_yet;
+  const std::vector<double> before = state.internal(tissue.rest_positions, 0, {});
   EXPECT_EQ(before, (std::vector<double>{no, no, no}));
-  const std::vector<double> then = state.numbers(smaller, 30, before);
+  const std::vector<double> then = state.internal(smaller, 30, before);
   EXPECT_EQ(then, (std::vector<double>{no, no, 30}));
-  EXPECT_EQ(state.numbers(tissue.rest_positions, 60, then), then);
-  EXPECT_EQ(OwnState(tissue, {.kind = Kind::starts_above, .threshold = 0.5}).numbers(tissue.rest_positions, 0, {}),
-            (std::vector<double>{0, 0, 0}));
+  EXPECT_EQ(state.internal(tissue.rest_positions, 60, then), then);
+  EXPECT_EQ(
+      ShapeActivation(tissue, {.kind = Kind::starts_above, .threshold = 0.5}).internal(tissue.rest_positions, 0, {}),
+      (std::vector<double>{0, 0, 0}));
 }
 
-TEST(OwnState, FollowsBetweenTwoValues) {
+TEST(ShapeActivation, FollowsBetweenTwoValues) {
   const Tissue tissue = row();
   Vectors smaller = tissue.rest_positions;
   for (Vec3& x : smaller) x.x() *= 0.7;
   const auto followed = [&](double from, double to) {
-    return OwnState(tissue, {.kind = Kind::follows, .from = from, .to = to}).numbers(smaller, 5, {})[0];
+    return ShapeActivation(tissue, {.kind = Kind::follows, .from = from, .to = to}).internal(smaller, 5, {})[0];
   };
   EXPECT_NEAR(followed(1, 0.4), 0.5, 1e-12);
   EXPECT_EQ(followed(1, 0.8), 1);
@@ -329,14 +330,14 @@ TEST(OwnState, FollowsBetweenTwoValues) {
 }
 
 // A wall pulls by what each of its cells has come to; a cell that has not begun leaves its half out.
-TEST(OwnState, ACortexActsFromItsCellsStart) {
+TEST(ShapeActivation, ACortexActsFromItsCellsStart) {
   const Tissue tissue = row();
   const CortexRule rule{.side = CellSide::apical,
                         .tension = 2,
                         .stiffness = 0.5,
                         .program = Program({0, 10}, {0, 1}),
                         .stiffness_program = Program({0, 10}, {1, 0}),
-                        .own = {.kind = Kind::starts_below, .threshold = 0.8}};
+                        .activation = {.kind = Kind::starts_below, .threshold = 0.8}};
   const Cortex law(tissue, CellSet(3, true), rule);
   Motion motion = at_rest(tissue);
   motion.internal = law.first_internal(tissue);
@@ -355,7 +356,7 @@ TEST(OwnState, ACortexActsFromItsCellsStart) {
   EXPECT_TRUE(law.program_points_s().empty());
 
   CortexRule following = rule;
-  following.own = {.kind = Kind::follows, .from = 1, .to = 0.5};
+  following.activation = {.kind = Kind::follows, .from = 1, .to = 0.5};
   const Cortex follower(tissue, CellSet(3, true), following);
   motion = at_rest(tissue);
   motion.internal = {0, 0.25, 1};
@@ -364,7 +365,7 @@ TEST(OwnState, ACortexActsFromItsCellsStart) {
 }
 
 // Contraction that is shut off early lets the furrow go, later it goes on, if walls and floor wait for their own cell.
-TEST(OwnState, DecidesWhatTheClockDoesNot) {
+TEST(ShapeActivation, DecidesWhatTheClockDoesNot) {
   const auto depth_um = [](double off_min) {
     Simulation simulation(load_scenario(
         find_scenario("furrow-slice"),
@@ -381,7 +382,7 @@ TEST(OwnState, DecidesWhatTheClockDoesNot) {
 }
 
 // When each cell began, who touches whom and rest areas that flow are part of what a run remembers.
-TEST(OwnState, ARunGoesOnToTheSameBits) {
+TEST(ShapeActivation, ARunGoesOnToTheSameBits) {
   const Scenario scenario =
       load_scenario(find_scenario("furrow-slice"),
                     {"cortex.shortening.program.time_min=[0, 11]", "time.end_min=17.8",

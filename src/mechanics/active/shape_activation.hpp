@@ -12,31 +12,31 @@ namespace plica {
 
 /// Quantity of a cell relative to its reference value. The stretch is that of its apical surface along the direction of
 /// largest stretch.
-enum class OwnMeasure { apical_area_ratio, basal_area_ratio, height_ratio, apical_stretch };
+enum class ShapeMeasure { apical_area_ratio, basal_area_ratio, height_ratio, apical_stretch };
 
 /// Rule by which cells start, or follow their shape. Cell numbers are those at the beginning of a step.
-struct OwnStateRule {
+struct ShapeActivationRule {
   enum class Kind { none, starts_below, starts_above, follows };
   Kind kind = Kind::none;
-  OwnMeasure measure = OwnMeasure::apical_area_ratio;
+  ShapeMeasure measure = ShapeMeasure::apical_area_ratio;
   double threshold = 1;     // for both triggers
   double from = 1, to = 0;  // follow: activity 0 up to `from`, 1 beyond `to`, linear between
 };
 
 /// State, one number per cell: start time (s) or `not_yet` for cells with a trigger, or progress from 0 to 1 for cells
 /// that follow.
-class OwnState {
+class ShapeActivation {
  public:
   static constexpr double not_yet = -1;
 
-  OwnState(const Tissue& tissue, const OwnStateRule& rule);
+  ShapeActivation(const Tissue& tissue, const ShapeActivationRule& rule);
 
-  [[nodiscard]] bool is_used() const { return rule_.kind != OwnStateRule::Kind::none; }
-  [[nodiscard]] bool starts() const { return is_used() && rule_.kind != OwnStateRule::Kind::follows; }
+  [[nodiscard]] bool is_used() const { return rule_.kind != ShapeActivationRule::Kind::none; }
+  [[nodiscard]] bool starts() const { return is_used() && rule_.kind != ShapeActivationRule::Kind::follows; }
 
   /// Return the state at given positions and time from the previous state (empty before the first step).
-  [[nodiscard]] std::vector<double> numbers(std::span<const Vec3> positions, double time_s,
-                                            std::span<const double> before) const;
+  [[nodiscard]] std::vector<double> internal(std::span<const Vec3> positions, double time_s,
+                                             std::span<const double> before) const;
 
   /// Return the quantity of each cell.
   [[nodiscard]] std::vector<double> ratios(std::span<const Vec3> positions) const;
@@ -44,7 +44,7 @@ class OwnState {
  private:
   [[nodiscard]] std::vector<double> sizes(std::span<const Vec3> positions) const;
 
-  OwnStateRule rule_;
+  ShapeActivationRule rule_;
   std::vector<Facet> facets_;                               // areas: facets of that side
   std::vector<std::vector<std::array<NodeId, 2>>> edges_;   // heights: of each cell, basal to apical
   std::vector<std::vector<NodeId>> apices_;                 // stretches: apical corners of each cell

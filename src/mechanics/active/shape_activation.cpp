@@ -1,4 +1,4 @@
-#include "mechanics/active/own_state.hpp"
+#include "mechanics/active/shape_activation.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -24,9 +24,10 @@ std::vector<Eigen::RowVector2d> mean_gradient(std::span<const Vec3> polygon) {
 
 }  // namespace
 
-OwnState::OwnState(const Tissue& tissue, const OwnStateRule& rule) : rule_(rule), at_rest_(tissue.cells.size(), 0.0) {
+ShapeActivation::ShapeActivation(const Tissue& tissue, const ShapeActivationRule& rule)
+    : rule_(rule), at_rest_(tissue.cells.size(), 0.0) {
   if (!is_used()) return;
-  if (rule.measure == OwnMeasure::height_ratio) {
+  if (rule.measure == ShapeMeasure::height_ratio) {
     for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
       const Cell& cell = tissue.cells[c];
       auto& edges = edges_.emplace_back();
@@ -38,7 +39,7 @@ OwnState::OwnState(const Tissue& tissue, const OwnStateRule& rule) : rule_(rule)
     }
     return;
   }
-  if (rule.measure == OwnMeasure::apical_stretch) {
+  if (rule.measure == ShapeMeasure::apical_stretch) {
     for (const Cell& cell : tissue.cells) {
       apices_.emplace_back(cell.apical_corners().begin(), cell.apical_corners().end());
       gradients_.push_back(mean_gradient(std::span(cell.rest_shape).last(cell.sides())));
@@ -46,11 +47,11 @@ OwnState::OwnState(const Tissue& tissue, const OwnStateRule& rule) : rule_(rule)
     std::ranges::fill(at_rest_, 1.0);
     return;
   }
-  facets_ = rule.measure == OwnMeasure::apical_area_ratio ? tissue.apical_facets : tissue.basal_facets;
+  facets_ = rule.measure == ShapeMeasure::apical_area_ratio ? tissue.apical_facets : tissue.basal_facets;
   for (const Facet& facet : facets_) at_rest_[facet.cell.index()] += facet_area(rest_corners(tissue, facet));
 }
 
-std::vector<double> OwnState::sizes(std::span<const Vec3> x) const {
+std::vector<double> ShapeActivation::sizes(std::span<const Vec3> x) const {
   std::vector<double> sizes(at_rest_.size(), 0.0);
   for (const Facet& facet : facets_) sizes[facet.cell.index()] += facet_area(gather(x, facet));
   for (std::size_t c = 0; c < edges_.size(); ++c)
@@ -65,29 +66,29 @@ std::vector<double> OwnState::sizes(std::span<const Vec3> x) const {
   return sizes;
 }
 
-std::vector<double> OwnState::ratios(std::span<const Vec3> positions) const {
+std::vector<double> ShapeActivation::ratios(std::span<const Vec3> positions) const {
   std::vector<double> ratios = sizes(positions);
   for (std::size_t c = 0; c < ratios.size(); ++c) ratios[c] = at_rest_[c] > 0 ? ratios[c] / at_rest_[c] : 1;
   return ratios;
 }
 
-std::vector<double> OwnState::numbers(std::span<const Vec3> positions, double time_s,
-                                      std::span<const double> before) const {
+std::vector<double> ShapeActivation::internal(std::span<const Vec3> positions, double time_s,
+                                              std::span<const double> before) const {
   if (!is_used()) return {};
-  std::vector<double> numbers = ratios(positions);
-  for (std::size_t c = 0; c < numbers.size(); ++c) {
-    const double ratio = numbers[c];
+  std::vector<double> values = ratios(positions);
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    const double ratio = values[c];
     if (!starts()) {
-      numbers[c] = std::clamp((ratio - rule_.from) / (rule_.to - rule_.from), 0.0, 1.0);
+      values[c] = std::clamp((ratio - rule_.from) / (rule_.to - rule_.from), 0.0, 1.0);
     } else if (!before.empty() && before[c] != not_yet) {
-      numbers[c] = before[c];
+      values[c] = before[c];
     } else {
       const bool has_come =
-          rule_.kind == OwnStateRule::Kind::starts_below ? ratio < rule_.threshold : ratio > rule_.threshold;
-      numbers[c] = has_come ? time_s : not_yet;
+          rule_.kind == ShapeActivationRule::Kind::starts_below ? ratio < rule_.threshold : ratio > rule_.threshold;
+      values[c] = has_come ? time_s : not_yet;
     }
   }
-  return numbers;
+  return values;
 }
 
 }  // namespace plica
