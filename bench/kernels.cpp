@@ -63,7 +63,7 @@ double median(std::vector<double> values) {
 class NoTangent final : public TangentSink {
  public:
   void add_block(NodeId, NodeId, const Mat3&) override {}
-  [[nodiscard]] bool takes_apart() const override { return true; }
+  [[nodiscard]] bool accepts_concurrent_blocks() const override { return true; }
 };
 
 struct Measured {
@@ -85,8 +85,8 @@ struct Measured {
   std::vector<Kernel> kernels_to_time() {
     constexpr double corotational = sizeof(CorotationalBatch) / 8.0, volume = sizeof(VolumeBatch) / 8.0,
                      vec = sizeof(Vec3);
-    double* out = numbers(std::span(result));
-    const double* d = numbers(scene.direction);
+    double* out = components(std::span(result));
+    const double* d = components(scene.direction);
     const CorotationalArrays e = elasticity.kernel_arrays(step), w = elasticity.kernel_arrays(warped);
     const VolumeArrays v = volumes.kernel_arrays(scene.positions, pressures);
     return {

@@ -72,7 +72,7 @@ void check_quantities(const Experiments& experiments, const std::vector<KnownNam
   for (std::size_t e = 0; e < experiments.experiments.size(); ++e)
     for (const Outcome& outcome : experiments.experiments[e].outcomes) {
       if (check(e, outcome, outcome.formula, e) && outcome.comparing != Comparing::nothing)
-        check(e, outcome, outcome.other_formula, outcome.other);
+        check(e, outcome, outcome.other_formula, outcome.compared_with);
     }
 }
 
@@ -109,10 +109,10 @@ void check_experiments(const Experiments& experiments) {
   if (!diagnostics.empty()) throw ScenarioError(std::move(diagnostics));
 
   // Report each problem once, whatever the number of draws and experiments that have it.
-  std::set<std::string> told;
+  std::set<std::string> reported;
   const auto tell = [&](const ScenarioError& error) {
     for (const Diagnostic& one : error.diagnostics())
-      if (told.insert(one.text()).second) diagnostics.push_back(one);
+      if (reported.insert(one.text()).second) diagnostics.push_back(one);
   };
   std::vector<KnownNames> known(experiments.experiments.size());
   for (std::size_t e = 0; e < experiments.experiments.size(); ++e) try {

@@ -44,7 +44,7 @@ struct Outcome {
   std::string quantity, other_quantity;  // as in the file; the second empty if the same
   Formula formula, other_formula;        // here, and in the experiment it is compared with
   Comparing comparing = Comparing::nothing;
-  std::size_t other = 0;  // index of the experiment it is compared with
+  std::size_t compared_with = 0;  // index of the experiment it is compared with
   // Range of hits; infinite if unbounded, and from inf to -inf if no number is a hit.
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
   double margin = 0;         // width of the undecided range outside
@@ -55,11 +55,12 @@ struct Outcome {
 
 /// Number to judge, from the run's own value and that of the other experiment; empty if a value is missing or a ratio
 /// has denominator 0.
-std::optional<double> compared(const Outcome& outcome, std::optional<double> own, std::optional<double> other);
+std::optional<double> compared(const Outcome& outcome, std::optional<double> value,
+                               std::optional<double> compared_value);
 
-/// Judge one run: hit from `low` to `high`, undecided up to `margin` outside, else miss. A missing own number is a
-/// miss, or a hit with `hit_if_none`; a missing other number is undecided.
-Judgement judge(const Outcome& outcome, std::optional<double> own, std::optional<double> other = {});
+/// Judge one run: hit from `low` to `high`, undecided up to `margin` outside, else miss. A missing value is a
+/// miss, or a hit with `hit_if_none`; a missing compared value is undecided.
+Judgement judge(const Outcome& outcome, std::optional<double> value, std::optional<double> compared_value = {});
 
 /// Closed interval.
 struct Interval {

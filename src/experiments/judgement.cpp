@@ -6,15 +6,16 @@
 
 namespace plica {
 
-std::optional<double> compared(const Outcome& outcome, std::optional<double> own, std::optional<double> other) {
-  if (outcome.comparing == Comparing::nothing || !own) return own;
-  if (!other || (outcome.comparing == Comparing::ratio && *other == 0)) return std::nullopt;
-  return outcome.comparing == Comparing::ratio ? *own / *other : *own - *other;
+std::optional<double> compared(const Outcome& outcome, std::optional<double> value,
+                               std::optional<double> compared_value) {
+  if (outcome.comparing == Comparing::nothing || !value) return value;
+  if (!compared_value || (outcome.comparing == Comparing::ratio && *compared_value == 0)) return std::nullopt;
+  return outcome.comparing == Comparing::ratio ? *value / *compared_value : *value - *compared_value;
 }
 
-Judgement judge(const Outcome& outcome, std::optional<double> own, std::optional<double> other) {
-  if (!own) return outcome.hit_if_none ? Judgement::hit : Judgement::miss;
-  const std::optional<double> number = compared(outcome, own, other);
+Judgement judge(const Outcome& outcome, std::optional<double> value, std::optional<double> compared_value) {
+  if (!value) return outcome.hit_if_none ? Judgement::hit : Judgement::miss;
+  const std::optional<double> number = compared(outcome, value, compared_value);
   if (!number) return Judgement::undecided;
   if (*number >= outcome.low && *number <= outcome.high) return Judgement::hit;
   const bool is_near = *number >= outcome.low - outcome.margin && *number <= outcome.high + outcome.margin;

@@ -19,7 +19,7 @@ std::string number(std::optional<double> value) { return value ? fmt::format("{:
 std::string range_text(const ExperimentResults& results, std::size_t e, const Outcome& outcome) {
   std::vector<double> all;
   for (std::size_t d = 0; d < results.draws(e); ++d)
-    if (const auto value = results.outcome(e, outcome, d).number) all.push_back(*value);
+    if (const auto value = results.outcome(e, outcome, d).judged) all.push_back(*value);
   if (all.size() < 2) return "";
   const auto [low, high] = std::ranges::minmax(all);
   return fmt::format("{:.4g} to {:.4g}", low + 0.0, high + 0.0);
@@ -38,7 +38,7 @@ std::vector<std::string> row_of(const ExperimentResults& results, std::size_t e,
           outcome.observed,
           outcome.source,
           criterion_text(outcome, results.experiments()),
-          number(results.outcome(e, outcome, 0).number),
+          number(results.outcome(e, outcome, 0).judged),
           range_text(results, e, outcome),
           fmt::format("{}", tally.hits),
           fmt::format("{}", tally.draws),
@@ -58,7 +58,7 @@ std::string criterion_text(const Outcome& outcome, const Experiments& experiment
   if (outcome.comparing != Comparing::nothing)
     text += fmt::format(" {} {} of {}", outcome.comparing == Comparing::ratio ? "divided by" : "minus",
                         outcome.other_quantity.empty() ? "that" : outcome.other_quantity,
-                        experiments.experiments[outcome.other].name);
+                        experiments.experiments[outcome.compared_with].name);
   if (!outcome.has_band()) return text + ": none";
   if (std::isfinite(outcome.low) && std::isfinite(outcome.high))
     text += fmt::format(", {} to {}", bound(outcome.low), bound(outcome.high));

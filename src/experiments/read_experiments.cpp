@@ -139,7 +139,7 @@ class Reader : TomlReader {
     experiment.slow = get<bool>(*given, "slow", before, "true or false").value_or(false);
     Outcome none;
     if (result_.are_of_claims) none.role = Role::seen;
-    const Outcome usual = told_of(*given, before, none);
+    const Outcome usual = read_description(*given, before, none);
     const toml::table* outcomes = table(*given, "outcome", before);
     if (outcomes == nullptr || outcomes->empty())
       report(node, before + "outcome", "is missing",
@@ -167,17 +167,17 @@ class Reader : TomlReader {
   }
 
   // Read the descriptive keys of an experiment or outcome; `usual` supplies missing ones. All belong to a question.
-  Outcome told_of(const toml::table& given, const std::string& before, const Outcome& usual) {
-    Outcome told = usual;
-    if (given.contains("question")) told = Outcome(), told.role = usual.role;
+  Outcome read_description(const toml::table& given, const std::string& before, const Outcome& usual) {
+    Outcome described = usual;
+    if (given.contains("question")) described = Outcome(), described.role = usual.role;
     const auto take = [&](const char* key, std::string& text) {
-      if (auto own = get<std::string>(given, key, before, "a text")) text = std::move(*own);
+      if (auto found = get<std::string>(given, key, before, "a text")) text = std::move(*found);
     };
-    take("question", told.question), take("observed", told.observed), take("source", told.source);
-    take("because", told.because);
-    if (const auto role = word(given, "role", before, roles)) told.role = *role;
-    if (const auto prediction = word(given, "prediction", before, predictions)) told.prediction = prediction;
-    return told;
+    take("question", described.question), take("observed", described.observed), take("source", described.source);
+    take("because", described.because);
+    if (const auto role = word(given, "role", before, roles)) described.role = *role;
+    if (const auto prediction = word(given, "prediction", before, predictions)) described.prediction = prediction;
+    return described;
   }
 
   void read_outcome(const std::string& name, const toml::node& node, const std::string& of_experiment,
@@ -190,7 +190,7 @@ class Reader : TomlReader {
     require_name(node, name, place);
     refuse_unknown(*given, before,
                    with_told_keys({"quantity", "over", "minus", "other_quantity", "hit", "undecided", "hit_if_none"}));
-    Outcome outcome = told_of(*given, before, usual);
+    Outcome outcome = read_description(*given, before, usual);
     outcome.name = name, outcome.line = static_cast<int>(node.source().begin.line);
     if (outcome.question.empty())
       report(node, before + "question", "is missing", "give it as a sentence, here or for the whole experiment");
@@ -238,11 +238,11 @@ class Reader : TomlReader {
     outcome.other_formula =
         there ? formula(*there, *given.get("other_quantity"), before + "other_quantity") : outcome.formula;
     outcome.comparing = key == std::string("over") ? Comparing::ratio : Comparing::difference;
-    outcome.other = static_cast<std::size_t>(std::ranges::find(names_, *name) - names_.begin());
-    if (outcome.other == names_.size())
+    outcome.compared_with = static_cast<std::size_t>(std::ranges::find(names_, *name) - names_.begin());
+    if (outcome.compared_with == names_.size())
       report(*given.get(key), before + key, fmt::format("\"{}\" is not an experiment of this file", *name),
              did_you_mean(*name, names_));
-    else if (outcome.other == result_.experiments.size())
+    else if (outcome.compared_with == result_.experiments.size())
       report(*given.get(key), before + key, "is the experiment itself", "name another");
   }
 
@@ -251,7 +251,7 @@ class Reader : TomlReader {
     for (const Experiment& experiment : result_.experiments)
       for (const Outcome& outcome : experiment.outcomes) {
         if (outcome.comparing == Comparing::nothing) continue;
-        const Experiment& other = result_.experiments[outcome.other];
+        const Experiment& other = result_.experiments[outcome.compared_with];
         const std::string key = fmt::format("experiment.{}.outcome.{}", experiment.name, outcome.name);
         if (other.draws < experiment.draws)
           report_at(outcome.line, key,

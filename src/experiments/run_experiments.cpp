@@ -153,16 +153,16 @@ void ExperimentResults::take(const Run& run, const std::string& status, const st
 DrawOutcome ExperimentResults::outcome(std::size_t experiment, const Outcome& outcome, std::size_t draw) const {
   const bool is_compared = outcome.comparing != Comparing::nothing;
   DrawOutcome result;
-  for (const std::size_t e : {experiment, is_compared ? outcome.other : experiment}) {
+  for (const std::size_t e : {experiment, is_compared ? outcome.compared_with : experiment}) {
     const DrawResult& run = of(e, draw);
     if (!run.has_ended()) return {};
     if (!run.is_solved()) result.judgement = Judgement::not_solved;
   }
   if (result.judgement) return result;
-  result.own = outcome.formula.value(of(experiment, draw).numbers);
-  if (is_compared) result.other = outcome.other_formula.value(of(outcome.other, draw).numbers);
-  result.number = compared(outcome, result.own, result.other);
-  result.judgement = judge(outcome, result.own, result.other);
+  result.value = outcome.formula.value(of(experiment, draw).numbers);
+  if (is_compared) result.compared_value = outcome.other_formula.value(of(outcome.compared_with, draw).numbers);
+  result.judged = compared(outcome, result.value, result.compared_value);
+  result.judgement = judge(outcome, result.value, result.compared_value);
   return result;
 }
 
@@ -189,9 +189,9 @@ std::string ExperimentResults::csv() const {
       for (std::size_t d = 0; d < draws(e); ++d) {
         const DrawOutcome result = outcome(e, one, d);
         text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", experiments_.experiments[e].name, one.name, d + 1,
-                            of(e, d).status, csv_field(one.quantity), number(result.own), number(result.other),
-                            number(result.number), result.judgement ? word_of(*result.judgement) : "",
-                            csv_field(of(e, d).reason));
+                            of(e, d).status, csv_field(one.quantity), number(result.value),
+                            number(result.compared_value), number(result.judged),
+                            result.judgement ? word_of(*result.judgement) : "", csv_field(of(e, d).reason));
       }
   return text;
 }

@@ -101,10 +101,10 @@ ScenarioError in_study(const ScenarioError& error, const StudyInput& study) {
   const std::vector<GivenKey> given = given_keys(study);
   const std::optional<Scenario> alone = scenario_alone(study);
   std::vector<Diagnostic> diagnostics;
-  std::set<std::string> told;
+  std::set<std::string> reported;
   for (const Diagnostic& diagnostic : error.diagnostics()) {
     const Diagnostic mapped = in_study(diagnostic, study, given, alone);
-    if (told.insert(mapped.text()).second) diagnostics.push_back(mapped);
+    if (reported.insert(mapped.text()).second) diagnostics.push_back(mapped);
   }
   return ScenarioError(std::move(diagnostics));
 }
@@ -153,8 +153,8 @@ void require_usable_values(const StudyInput& study, const StudyDesign& design) {
     }
   }
   std::vector<Diagnostic> diagnostics;
-  for (const auto& [value, told] : problems)
-    if (!usable.contains(value)) diagnostics.insert(diagnostics.end(), told.begin(), told.end());
+  for (const auto& [value, found] : problems)
+    if (!usable.contains(value)) diagnostics.insert(diagnostics.end(), found.begin(), found.end());
   if (!diagnostics.empty()) throw in_study(ScenarioError(std::move(diagnostics)), study);
 }
 

@@ -56,7 +56,7 @@ const char* depth_word(const fs::path& directory) {
 
 // Description of the study from its file, if its scenario still exists; else from the scenario with all keys in the
 // directory, which makes the same runs.
-Json told(const fs::path& directory, const Json& begun) {
+Json study_description(const fs::path& directory, const Json& begun) {
   const std::string name = begun.value("name", "study"), text = read_file(directory / "study.toml");
   Json data = {{"name", name},
                {"scenario", "scenario.toml"},
@@ -101,7 +101,7 @@ std::string study_report_page(const fs::path& directory, const fs::path& place) 
     kept += kept_of(files, name_of_run(design.runs[r], has_replicates)) + '\n';
   }
 
-  Json data = told(directory, begun);
+  Json data = study_description(directory, begun);
   data["format"] = 1;
   data["made_by"] = fmt::format("plica {} ({})", version(), commit());
   data["begun_by"] = begun.value("plica", "");

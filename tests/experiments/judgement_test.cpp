@@ -238,7 +238,7 @@ TEST_F(ReadExperiments, TakesWhatTheFileSays) {
   EXPECT_EQ(end.prediction, Judgement::hit);
   EXPECT_FALSE(rest.prediction);
   EXPECT_EQ(end.comparing, Comparing::difference);
-  EXPECT_EQ(end.other, 0U);
+  EXPECT_EQ(end.compared_with, 0U);
   EXPECT_TRUE(std::isinf(end.low) && end.low < 0);
   EXPECT_EQ(end.high, 0);
   EXPECT_EQ(end.margin, 0.5);
