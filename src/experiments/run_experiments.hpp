@@ -34,9 +34,9 @@ struct DrawResult {
 
 /// Outcome with one draw.
 struct DrawOutcome {
-  std::optional<double> value, compared_value,
-      judged;  // of the quantity, in this and in the other experiment; criterion applies to the last
-  std::optional<Judgement> judgement;  // empty: not run
+  std::optional<double> value, compared_value;  // of the quantity, in this experiment and in the other
+  std::optional<double> judged;                 // number that the criterion applies to
+  std::optional<Judgement> judgement;           // empty: not run
 };
 
 /// Runs of experiments in a directory.

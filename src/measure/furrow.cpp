@@ -277,24 +277,24 @@ FurrowSpeeds speeds_of_step(const M& m) {
 }
 
 // Time series of a column, without missing values.
-struct Course {
+struct TimeSeries {
   std::vector<double> times_s, values;
 };
 
-Course course_of(std::span<const Observation> rows, std::string_view column) {
-  Course course;
+TimeSeries time_series_of(std::span<const Observation> rows, std::string_view column) {
+  TimeSeries series;
   for (const Observation& row : rows)
     if (const std::optional<double> value = row[column]) {
-      course.times_s.push_back(row.time_s());
-      course.values.push_back(*value);
+      series.times_s.push_back(row.time_s());
+      series.values.push_back(*value);
     }
-  return course;
+  return series;
 }
 
 Column::OfRun reaching(std::string_view column, double level) {
   return [=](std::span<const Observation> rows) {
-    const Course course = course_of(rows, column);
-    return time_of_reaching(course.times_s, course.values, level);
+    const TimeSeries series = time_series_of(rows, column);
+    return time_of_reaching(series.times_s, series.values, level);
   };
 }
 
@@ -317,7 +317,7 @@ Column of_history(std::string_view name, std::string_view meaning, std::optional
 
 Column::OfRun of_knee(double Knee::*number) {
   return [=](std::span<const Observation> rows) -> std::optional<double> {
-    const Course depth = course_of(rows, "furrow_depth_um");
+    const TimeSeries depth = time_series_of(rows, "furrow_depth_um");
     const std::optional<Knee> found = knee(depth.times_s, depth.values);
     return found ? std::optional((*found).*number) : std::nullopt;
   };

@@ -10,13 +10,13 @@ namespace plica {
 namespace {
 
 // Growth of each daughter; cells by their index before the cut.
-struct Destiny {
+struct FinalShape {
   std::vector<Vec3> rest_to;
   double target_to;
 };
 
 // Final shape of a mother cell: the target of its growth, or its present shape.
-Destiny destiny(const Model& model, CellId cell) {
+FinalShape final_shape(const Model& model, CellId cell) {
   for (const Growth& growth : model.growths)
     if (growth.cell == cell) return {growth.rest_to, growth.target_to};
   return {model.tissue.cells[cell.index()].rest_shape, model.volumes.targets()[cell.index()]};
@@ -55,7 +55,8 @@ std::vector<Vec3> stretched_half(const CellCut& cut, bool is_low, const std::vec
 }
 
 std::array<Growth, 2> growths_of(const PlannedDivision& plan, const std::array<CellId, 2>& daughters,
-                                 const Destiny& mother, const Tissue& tissue, const Vectors& positions, double time_s) {
+                                 const FinalShape& mother, const Tissue& tissue, const Vectors& positions,
+                                 double time_s) {
   std::array<Growth, 2> growths;
   const bool is_hexahedron = mother.rest_to.size() == 8 && plan.cut.second_wall == plan.cut.first_wall + 2;
   for (const int i : {0, 1}) {
@@ -161,10 +162,10 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
 
   const Vec3 momentum_before = momentum(model, state.velocities);
   std::vector<CellCut> cuts;
-  std::vector<Destiny> destinies;
+  std::vector<FinalShape> final_shapes;
   for (const PlannedDivision& plan : planned) {
     cuts.push_back(plan.cut);
-    destinies.push_back(destiny(model, plan.cut.cell));
+    final_shapes.push_back(final_shape(model, plan.cut.cell));
     std::erase_if(model.growths, [&](const Growth& growth) { return growth.cell == plan.cut.cell; });
   }
 
@@ -175,7 +176,7 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
 
   for (std::size_t i = 0; i < planned.size(); ++i)
     for (const Growth& growth :
-         growths_of(planned[i], division.daughters[i], destinies[i], model.tissue, state.positions, state.time_s)) {
+         growths_of(planned[i], division.daughters[i], final_shapes[i], model.tissue, state.positions, state.time_s)) {
       model.tissue.cells[growth.cell.index()].target_volume = growth.target_from;
       model.growths.push_back(growth);
     }

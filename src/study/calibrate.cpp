@@ -37,15 +37,15 @@ constexpr double penalty = 2;        // of a point without a value, relative to 
 constexpr double unknown = 1e3;      // worst miss before any is known
 
 // Evaluate points and record what both searches need.
-class Looker {
+class Evaluator {
  public:
-  Looker(std::vector<double> start, std::size_t targets, const LookAt& look)
-      : best_(std::move(start)), targets_(targets), look_(look) {}
+  Evaluator(std::vector<double> start, std::size_t targets, const Evaluate& evaluate)
+      : best_(std::move(start)), targets_(targets), evaluate_(evaluate) {}
 
-  const Look& at(const std::vector<double>& place) {
+  const Evaluation& at(const std::vector<double>& place) {
     if (place == place_) return last_;
     place_ = place;
-    last_ = look_(place);
+    last_ = evaluate_(place);
     const double miss = worst_miss(last_.misses);
     since_better_ = miss < better * best_miss_ ? 0 : since_better_ + 1;
     if (miss < best_miss_) best_miss_ = miss, best_ = place;
@@ -66,48 +66,48 @@ class Looker {
  private:
   std::vector<double> best_, place_;
   std::size_t targets_;
-  const LookAt& look_;
-  Look last_;
+  const Evaluate& evaluate_;
+  Evaluation last_;
   std::size_t since_better_ = 0;
   double best_miss_ = std::numeric_limits<double>::infinity(), worst_miss_ = 0;  // of evaluations with a value
 };
 
 // Search between the bounds. Returns true if they bracket the target and every point had a value: the search is
 // complete.
-bool search_bracket(Looker& looker) {
+bool search_bracket(Evaluator& evaluator) {
   bool all_have_values = true;
   const auto miss = [&](double place) {
-    const Look& look = looker.at({place});
-    all_have_values = all_have_values && !look.misses.empty();
-    return look.over || look.misses.empty() ? 0.0 : look.misses.front();  // 0 ends the search
+    const Evaluation& evaluation = evaluator.at({place});
+    all_have_values = all_have_values && !evaluation.misses.empty();
+    return evaluation.over || evaluation.misses.empty() ? 0.0 : evaluation.misses.front();  // 0 ends the search
   };
-  const double low = miss(0), high = looker.over() ? 0 : miss(1);
-  if (looker.over()) return true;
+  const double low = miss(0), high = evaluator.over() ? 0 : miss(1);
+  if (evaluator.over()) return true;
   if (!all_have_values || low * high > 0) return false;
   std::uintmax_t most = 100;
   const auto narrow = [](double a, double b) { return std::abs(b - a) < smallest_bracket; };
   boost::math::tools::toms748_solve(miss, 0.0, 1.0, low, high, narrow, most);
-  return looker.over() || all_have_values;
+  return evaluator.over() || all_have_values;
 }
 
 // A miss is an equation, m = 0, given as two inequalities, since NLopt allows at most as many equations as coordinates.
 void misses_for_nlopt(unsigned count, double* at_most_0, unsigned dimension, const double* place, double*, void* data) {
-  Looker& looker = *static_cast<Looker*>(data);
-  looker.at({place, place + dimension});
-  if (looker.over() || looker.gets_nowhere()) throw nlopt::forced_stop();
-  const std::vector<double> misses = looker.misses_or_penalty();
+  Evaluator& evaluator = *static_cast<Evaluator*>(data);
+  evaluator.at({place, place + dimension});
+  if (evaluator.over() || evaluator.gets_nowhere()) throw nlopt::forced_stop();
+  const std::vector<double> misses = evaluator.misses_or_penalty();
   for (unsigned i = 0; i < count; ++i) at_most_0[i] = i % 2 == 0 ? misses[i / 2] : -misses[i / 2];
 }
 
 double nothing_to_minimise(unsigned, const double*, double*, void*) { return 0; }
 
-void search_linear_models(Looker& looker, std::size_t targets) {
-  std::vector<double> place = looker.best();
+void search_linear_models(Evaluator& evaluator, std::size_t targets) {
+  std::vector<double> place = evaluator.best();
   nlopt::opt search(nlopt::LN_COBYLA, static_cast<unsigned>(place.size()));
   search.set_lower_bounds(0);
   search.set_upper_bounds(1);
   search.set_min_objective(nothing_to_minimise, nullptr);
-  search.add_inequality_mconstraint(misses_for_nlopt, &looker, std::vector<double>(2 * targets, 0));
+  search.add_inequality_mconstraint(misses_for_nlopt, &evaluator, std::vector<double>(2 * targets, 0));
   search.set_initial_step(first_step);
   search.set_xtol_abs(smallest_step);
   try {
@@ -266,10 +266,10 @@ double worst_miss(const std::vector<double>& misses) {
   return worst;
 }
 
-void search_targets(const std::vector<double>& start, std::size_t targets, const LookAt& look) {
-  Looker looker(start, targets, look);
-  if (start.size() == 1 && targets == 1 && search_bracket(looker)) return;
-  if (!looker.over()) search_linear_models(looker, targets);
+void search_targets(const std::vector<double>& start, std::size_t targets, const Evaluate& evaluate) {
+  Evaluator evaluator(start, targets, evaluate);
+  if (start.size() == 1 && targets == 1 && search_bracket(evaluator)) return;
+  if (!evaluator.over()) search_linear_models(evaluator, targets);
 }
 
 VariedKey parse_varied_key(const std::string& text) {
@@ -364,11 +364,11 @@ Calibration calibrate(const CalibrationProblem& problem, const CalibrationHooks&
   check_calibration(problem);
   Calibration result;
   std::vector<Trial> trials;
-  const auto look_at = [&](const std::vector<double>& place) -> Look {
+  const auto evaluate = [&](const std::vector<double>& place) -> Evaluation {
     const std::vector<double> values = values_at(problem, place);
     const auto before = std::ranges::find(trials, values, &Trial::values);
     if (before != trials.end()) return {misses(problem, *before), false};
-    const auto finish = [&](CalibrationEnd end) -> Look {
+    const auto finish = [&](CalibrationEnd end) -> Evaluation {
       result.end = end;
       return {{}, true};
     };
@@ -384,7 +384,7 @@ Calibration calibrate(const CalibrationProblem& problem, const CalibrationHooks&
     if (trial->worst_miss <= 1) result.end = CalibrationEnd::met;
     return {misses(problem, *trial), trial->worst_miss <= 1};
   };
-  search_targets(first_place(problem), problem.targets.size(), look_at);
+  search_targets(first_place(problem), problem.targets.size(), evaluate);
   return result;
 }
 

@@ -100,17 +100,17 @@ Calibration calibrate(const CalibrationProblem& problem, const CalibrationHooks&
 std::string calibrated_toml(const CalibrationProblem& problem, const Calibration& calibration, const std::string& file);
 
 /// Result of one evaluation.
-struct Look {
+struct Evaluation {
   std::vector<double> misses;  // targets, in units of their tolerances: met from -1 to 1; empty: no value
   bool over = false;           // end the search: targets met, or limit reached
 };
 
 /// Evaluate a point: coordinates in [0, 1]; keys.
-using LookAt = std::function<Look(const std::vector<double>&)>;
+using Evaluate = std::function<Evaluation(const std::vector<double>&)>;
 
-/// Evaluate points until `look` reports `over` or no nearby point is better (steps below 1e-4). Starts at `start`; with
-/// a single target at the bounds. A point without a value counts as worse than all others.
-void search_targets(const std::vector<double>& start, std::size_t targets, const LookAt& look);
+/// Evaluate points until `evaluate` reports `over` or no nearby point is better (steps below 1e-4). Starts at `start`;
+/// with a single target at the bounds. A point without a value counts as worse than all others.
+void search_targets(const std::vector<double>& start, std::size_t targets, const Evaluate& evaluate);
 
 /// Largest absolute miss; infinite without a value.
 double worst_miss(const std::vector<double>& misses);

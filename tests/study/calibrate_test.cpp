@@ -149,20 +149,20 @@ TEST(Calibrate, KeepsToItsTrials) {
 using Place = std::vector<double>;
 
 struct Searched {
-  int looks = 0;
+  int evaluations = 0;
   double best = std::numeric_limits<double>::infinity();
   Place where;
 };
 
-// Searches with a function for the runs, for at most 100 looks.
+// Searches with a function for the runs, for at most 100 evaluations.
 Searched search(const Place& start, std::size_t targets, const std::function<std::vector<double>(const Place&)>& run) {
   Searched searched;
   search_targets(start, targets, [&](const Place& place) {
     const std::vector<double> misses = run(place);
     for (const double x : place) EXPECT_TRUE(x >= 0 && x <= 1) << x;
-    ++searched.looks;
+    ++searched.evaluations;
     if (worst_miss(misses) < searched.best) searched.best = worst_miss(misses), searched.where = place;
-    return Look{misses, worst_miss(misses) <= 1 || searched.looks >= 100};
+    return Evaluation{misses, worst_miss(misses) <= 1 || searched.evaluations >= 100};
   });
   return searched;
 }
@@ -171,13 +171,13 @@ TEST(TargetSearch, OneKeyOneTargetIsBracketed) {
   const Searched found = search({0.9}, 1, [](const Place& x) { return Place{(std::exp(x[0]) - 1.5) * 1000}; });
   EXPECT_LE(found.best, 1);
   EXPECT_NEAR(found.where[0], std::log(1.5), 1e-3);
-  EXPECT_LE(found.looks, 6);
+  EXPECT_LE(found.evaluations, 6);
 }
 
 TEST(TargetSearch, EndsThatDoNotBracketMayHideAMeetingPlace) {
   const Searched found = search({0.5}, 1, [](const Place& x) { return Place{300 * (0.02 - std::pow(x[0] - 0.6, 2))}; });
   EXPECT_LE(found.best, 1);
-  EXPECT_LE(found.looks, 20);
+  EXPECT_LE(found.evaluations, 20);
 }
 
 TEST(TargetSearch, FindsTheNearestWhereNothingMeets) {
@@ -185,7 +185,7 @@ TEST(TargetSearch, FindsTheNearestWhereNothingMeets) {
   EXPECT_NEAR(inside.where[0], 0.6, 0.05);
   const Searched at_bound = search({0.5}, 1, [](const Place& x) { return Place{100 + 100 * x[0]}; });
   EXPECT_EQ(at_bound.where, Place{0});
-  EXPECT_LE(std::max(inside.looks, at_bound.looks), 25) << "it ends when it gets nowhere";
+  EXPECT_LE(std::max(inside.evaluations, at_bound.evaluations), 25) << "it ends when it gets nowhere";
 }
 
 TEST(TargetSearch, SeveralKeysAndTargets) {
@@ -196,11 +196,11 @@ TEST(TargetSearch, SeveralKeysAndTargets) {
     return Place{200 * (std::exp(x[0]) * x[1] - 0.5), 200 * (x[0] + x[1] * x[2] - 0.6),
                  200 * (x[2] * x[2] - x[0] - 0.2)};
   });
-  std::cout << two.looks << " looks with two keys, " << three.looks << " with three\n";
+  std::cout << two.evaluations << " evaluations with two keys, " << three.evaluations << " with three\n";
   EXPECT_LE(two.best, 1);
-  EXPECT_LE(two.looks, 12);
+  EXPECT_LE(two.evaluations, 12);
   EXPECT_LE(three.best, 1);
-  EXPECT_LE(three.looks, 20);
+  EXPECT_LE(three.evaluations, 20);
 }
 
 TEST(TargetSearch, MoreTargetsThanKeysAndFewer) {
@@ -221,7 +221,7 @@ TEST(TargetSearch, GoesOnWhereThereIsNoValue) {
   }
   const Searched none = search({0.5, 0.5}, 2, [](const Place&) { return Place{}; });
   EXPECT_TRUE(std::isinf(none.best));
-  EXPECT_LE(none.looks, 25);
+  EXPECT_LE(none.evaluations, 25);
 }
 
 TEST(QuietRun, ComesToWhatPlicaRunWrites) {

@@ -106,13 +106,13 @@ std::size_t drop_unused(PolygonSurface& surface, std::size_t merged) {
 }
 
 /// A face beyond an edge, and whether it runs along the edge in the same direction, as it should not.
-struct Across {
+struct FaceAcross {
   std::size_t face;
   bool runs_alike;
 };
 
 // Faces across the edges of each face; none across a rim.
-std::vector<std::vector<Across>> faces_across(const PolygonSurface& surface) {
+std::vector<std::vector<FaceAcross>> faces_across(const PolygonSurface& surface) {
   std::map<std::pair<std::size_t, std::size_t>, std::vector<std::pair<std::size_t, bool>>> faces;  // and if it rises
   for (std::size_t face = 0; face < surface.polygons.size(); ++face) {
     const auto& polygon = surface.polygons[face];
@@ -121,7 +121,7 @@ std::vector<std::vector<Across>> faces_across(const PolygonSurface& surface) {
       faces[std::minmax(from, to)].emplace_back(face, from < to);
     }
   }
-  std::vector<std::vector<Across>> across(surface.polygons.size());
+  std::vector<std::vector<FaceAcross>> across(surface.polygons.size());
   for (const auto& [edge, at] : faces) {
     if (at.size() > 2)
       throw MeshError("the edge from {} to {} belongs to {} faces, {}, {} and {} among them; an edge may belong to two",
@@ -139,7 +139,7 @@ std::vector<std::vector<Across>> faces_across(const PolygonSurface& surface) {
 std::vector<std::size_t> keep_one_piece(PolygonSurface& surface, bool keep_largest, std::vector<std::string>& remarks) {
   const auto across = faces_across(surface);
   const Pieces pieces = pieces_of(across.size(), [&](std::size_t face, const auto& take) {
-    for (const Across& other : across[face]) take(other.face);
+    for (const FaceAcross& other : across[face]) take(other.face);
   });
   std::vector<std::size_t> kept(surface.polygons.size());
   std::iota(kept.begin(), kept.end(), std::size_t{0});
@@ -169,7 +169,7 @@ std::vector<bool> unlike_first(const PolygonSurface& surface) {
   std::vector<std::size_t> reached = {0};
   turn[0] = 0;
   for (std::size_t i = 0; i < reached.size(); ++i)
-    for (const Across& other : across[reached[i]]) {
+    for (const FaceAcross& other : across[reached[i]]) {
       const int wanted = turn[reached[i]] ^ static_cast<int>(other.runs_alike);
       if (turn[other.face] == 1 - wanted)
         throw MeshError("{} and face {} cannot both face outward: the surface is one-sided",
@@ -339,18 +339,18 @@ void check_faces(const PolygonSurface& surface, bool mended) {
 MendedPolygons mend_shapes(PolygonSurface& surface, const PolygonOptions& options) {
   const Vectors start = surface.vertices;
   const std::vector<VertexBend> bends = vertex_bends(surface);
-  MendingGround ground;
+  MendingRules rules;
   for (const auto& polygon : surface.polygons)
-    ground.normals.push_back(area_vector(surface.vertices, polygon).normalized());
-  ground.along = [&](const PolygonEdge& edge) {
+    rules.normals.push_back(area_vector(surface.vertices, polygon).normalized());
+  rules.along = [&](const PolygonEdge& edge) {
     return Vec3((start[edge.vertices[1]] - start[edge.vertices[0]]).normalized());
   };
-  ground.allowed = [&](std::size_t vertex, const Vec3& to) {
+  rules.allowed = [&](std::size_t vertex, const Vec3& to) {
     const Vec3& normal = bends[vertex].normal;
     return Vec3(to - (to - start[vertex]).dot(normal) * normal);
   };
   const double limit_um = farthest_move * mean_side(surface);
-  const MendedPolygons mended = mend_polygons(ground, options, surface);
+  const MendedPolygons mended = mend_polygons(rules, options, surface);
   for (std::size_t v = 0; v < start.size(); ++v) {
     if ((surface.vertices[v] - start[v]).norm() <= limit_um) continue;
     surface.vertices = start;

@@ -24,21 +24,21 @@ namespace {
 constexpr int rounds = 35;  // of Lloyd's relaxation, as on closed surfaces (surface_polygons.cpp)
 constexpr double overrelaxation = 1.5;
 
-using Whole = std::array<int, 2>;  // along x and y
+using IntegerPair = std::array<int, 2>;  // along x and y
 
 /// Neighbour beyond a side: a cell, so many periods away, or below 0 a side of the rectangle.
-struct Beyond {
+struct SideNeighbour {
   int cell;
-  Whole periods = {0, 0};
+  IntegerPair periods = {0, 0};
 
   [[nodiscard]] bool is_cell() const { return cell >= 0; }
-  auto operator<=>(const Beyond&) const = default;
+  auto operator<=>(const SideNeighbour&) const = default;
 };
 
 /// A convex polygon in the plane.
 struct Cut {
   Vectors corners;
-  std::vector<Beyond> beyond;  // of the side from a corner to the next
+  std::vector<SideNeighbour> beyond;  // of the side from a corner to the next
 };
 
 /// Uncut region of a point: the rectangle, or along a period half the distance to its own images.
@@ -55,7 +55,7 @@ Cut uncut(const Rectangle& rectangle, std::size_t own, const Vec3& point) {
 }
 
 /// Leaves what is nearer to `own` than to `other`.
-void cut_by(const Vec3& own, const Vec3& other, const Beyond& name, Cut& cut) {
+void cut_by(const Vec3& own, const Vec3& other, const SideNeighbour& name, Cut& cut) {
   const Vec3 way = other - own, middle = 0.5 * (own + other);
   const std::size_t n = cut.corners.size();
   std::vector<double> beyond(n);
@@ -76,10 +76,10 @@ void cut_by(const Vec3& own, const Vec3& other, const Beyond& name, Cut& cut) {
   cut = std::move(left);
 }
 
-/// Points in squares, so that those near another are found. Along a period they are a little longer, and fill it.
-class Squares {
+/// Points by squares of a grid, to find those near another. Along a period, squares are lengthened to fill it.
+class PointGrid {
  public:
-  Squares(const Vectors& points, const Rectangle& rectangle) : points_(points), rectangle_(rectangle) {
+  PointGrid(const Vectors& points, const Rectangle& rectangle) : points_(points), rectangle_(rectangle) {
     const auto& [size, is_periodic] = rectangle;
     const double side = std::sqrt(2 * size[0] * size[1] / static_cast<double>(points.size()));
     for (int axis = 0; axis < 2; ++axis) {
@@ -111,25 +111,25 @@ class Squares {
  private:
   struct Image {
     Vec3 at;
-    Beyond name;
+    SideNeighbour name;
   };
 
-  [[nodiscard]] Whole place(const Vec3& point) const {
-    Whole place;
+  [[nodiscard]] IntegerPair place(const Vec3& point) const {
+    IntegerPair place;
     for (int axis = 0; axis < 2; ++axis) {
       const double from_end = point[axis] + 0.5 * rectangle_.size_um[axis];
       place[axis] = std::clamp(static_cast<int>(from_end / sides_[axis]), 0, counts_[axis] - 1);
     }
     return place;
   }
-  [[nodiscard]] std::size_t number(const Whole& place) const {
+  [[nodiscard]] std::size_t number(const IntegerPair& place) const {
     return static_cast<std::size_t>(place[0]) +
            static_cast<std::size_t>(counts_[0]) * static_cast<std::size_t>(place[1]);
   }
 
   // The nearest first.
   [[nodiscard]] std::vector<Image> in_ring(int ring, const Vec3& from) const {
-    const Whole middle = place(from);
+    const IntegerPair middle = place(from);
     std::vector<Image> found;
     for (int row = middle[1] - ring; row <= middle[1] + ring; ++row)
       for (int column = middle[0] - ring; column <= middle[0] + ring; ++column)
@@ -140,8 +140,8 @@ class Squares {
   }
 
   // None where the rectangle ends.
-  void add_points_of(Whole place, std::vector<Image>& found) const {
-    Whole periods = {0, 0};
+  void add_points_of(IntegerPair place, std::vector<Image>& found) const {
+    IntegerPair periods = {0, 0};
     Vec3 shift = Vec3::Zero();
     for (int axis = 0; axis < 2; ++axis) {
       const int whole = static_cast<int>(std::floor(static_cast<double>(place[axis]) / counts_[axis]));
@@ -157,15 +157,15 @@ class Squares {
   const Vectors& points_;
   const Rectangle& rectangle_;
   std::array<double, 2> sides_;  // of a square, along x and y
-  Whole counts_;                 // columns and rows
+  IntegerPair counts_;           // columns and rows
   std::vector<std::vector<std::size_t>> lists_;
 };
 
 std::vector<Cut> cut_rectangle(const Vectors& points, const Rectangle& rectangle) {
-  const Squares squares(points, rectangle);
+  const PointGrid grid(points, rectangle);
   std::vector<Cut> cuts;
   cuts.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) cuts.push_back(squares.cell(i));
+  for (std::size_t i = 0; i < points.size(); ++i) cuts.push_back(grid.cell(i));
   return cuts;
 }
 
@@ -179,7 +179,7 @@ Vec3 centroid(const Cut& cut) {
 void refuse_few_cells(const std::vector<Cut>& cuts) {
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     std::vector<int> about = {static_cast<int>(i)};
-    for (const Beyond& one : cuts[i].beyond)
+    for (const SideNeighbour& one : cuts[i].beyond)
       if (one.is_cell()) about.push_back(one.cell);
     std::ranges::sort(about);
     if (std::ranges::adjacent_find(about) != about.end())
@@ -192,7 +192,7 @@ void refuse_few_cells(const std::vector<Cut>& cuts) {
 
 /// A vertex and its images: by the periods of the first cell about each.
 struct Images {
-  std::map<Whole, std::size_t> vertices;
+  std::map<IntegerPair, std::size_t> vertices;
   std::size_t original = 0;
   int cells = 0;  // that have come to one of them
 };
@@ -204,21 +204,21 @@ std::vector<std::string> mend(const Vectors& points, PolygonSurface& polygons, c
                               double least_edge) {
   const Vectors start = polygons.vertices;
   const std::array<double, 2> rim = {0.5 * shape.length_um, 0.5 * shape.width_um};
-  MendingGround ground;
-  ground.normals.assign(points.size(), Vec3::UnitZ());
-  ground.along = [&](const PolygonEdge& edge) {
+  MendingRules rules;
+  rules.normals.assign(points.size(), Vec3::UnitZ());
+  rules.along = [&](const PolygonEdge& edge) {
     if (edge.right != no_polygon) {
       const Vec3 way = points[edge.right] - points[edge.left];
       return Vec3(Vec3::UnitZ().cross(way - polygons.periods.whole(way)).normalized());
     }
     return Vec3((start[edge.vertices[1]] - start[edge.vertices[0]]).normalized());
   };
-  ground.allowed = [&](std::size_t vertex, Vec3 to) {
+  rules.allowed = [&](std::size_t vertex, Vec3 to) {
     for (int axis = 0; axis < 2; ++axis)
       if (!shape.is_periodic[axis] && std::abs(start[vertex][axis]) == rim[axis]) to[axis] = start[vertex][axis];
     return to;
   };
-  const MendedPolygons mended = mend_polygons(ground, {.least_edge = least_edge}, polygons);
+  const MendedPolygons mended = mend_polygons(rules, {.least_edge = least_edge}, polygons);
   for (std::size_t p = 0; p < points.size(); ++p)
     if (const std::string flaw = polygon_flaw(polygons.vertices, polygons.polygons[p], Vec3::UnitZ()); !flaw.empty())
       throw MeshError("cell {} at ({:.4g}, {:.4g}) um {}; try another seed", p, points[p].x(), points[p].y(), flaw);
@@ -226,9 +226,10 @@ std::vector<std::string> mend(const Vectors& points, PolygonSurface& polygons, c
 }
 
 /// Map a place of the flat sheet to the curved one.
-class Bent {
+class CurvedSheet {
  public:
-  explicit Bent(const SheetShape& shape) : along_(shape.curvature_per_um[0]), across_(shape.curvature_per_um[1]) {
+  explicit CurvedSheet(const SheetShape& shape)
+      : along_(shape.curvature_per_um[0]), across_(shape.curvature_per_um[1]) {
     const double turn = std::abs(along_) * shape.length_um, tilt = std::abs(across_) * shape.width_um;
     constexpr double pi = std::numbers::pi;
     for (int axis = 0; axis < 2; ++axis)
@@ -307,16 +308,17 @@ PolygonSurface rectangle_polygons(const Vectors& points, const Rectangle& rectan
   refuse_few_cells(cuts);
   PolygonSurface surface;
   std::vector<std::size_t> originals;
-  using Name = std::array<Beyond, 3>;  // the cells and sides of the rectangle about a vertex
+  using Name = std::array<SideNeighbour, 3>;  // the cells and sides of the rectangle about a vertex
   std::map<Name, Images> all;
   for (std::size_t i = 0; i < cuts.size(); ++i) {
     std::vector<std::size_t>& polygon = surface.polygons.emplace_back();
     const std::size_t n = cuts[i].corners.size();
     for (std::size_t k = 0; k < n; ++k) {
-      Name name = {Beyond{static_cast<int>(i)}, cuts[i].beyond[(k + n - 1) % n], cuts[i].beyond[k]};
+      Name name = {SideNeighbour{static_cast<int>(i)}, cuts[i].beyond[(k + n - 1) % n], cuts[i].beyond[k]};
       std::ranges::sort(name);
-      const Whole periods = std::ranges::max_element(name, {}, &Beyond::is_cell)->periods;  // of the first cell
-      for (Beyond& one : name)
+      const IntegerPair periods =
+          std::ranges::max_element(name, {}, &SideNeighbour::is_cell)->periods;  // of the first cell
+      for (SideNeighbour& one : name)
         for (int axis = 0; axis < 2; ++axis) one.periods[axis] -= one.is_cell() ? periods[axis] : 0;
       Images& images = all[name];
       const auto [entry, is_new] = images.vertices.try_emplace(periods, surface.vertices.size());
@@ -329,7 +331,7 @@ PolygonSurface rectangle_polygons(const Vectors& points, const Rectangle& rectan
     }
   }
   for (const auto& [name, images] : all)
-    if (images.cells != std::ranges::count_if(name, &Beyond::is_cell)) {
+    if (images.cells != std::ranges::count_if(name, &SideNeighbour::is_cell)) {
       const Vec3& at = surface.vertices[images.original];
       throw MeshError("ambiguous cells at ({:.4g}, {:.4g}) um: points are too regular; set another seed", at.x(),
                       at.y());
@@ -345,13 +347,13 @@ Tissue build_sheet(const SheetShape& shape, std::size_t count, std::uint64_t see
 }
 
 Tissue build_sheet(const SheetShape& shape, const Vectors& points, const PolygonCells& cells) {
-  const Bent bent(shape);
+  const CurvedSheet curved(shape);
   PolygonSurface polygons = rectangle_polygons(points, rectangle_of(shape));
   std::vector<std::string> remarks = mend(points, polygons, shape, cells.least_edge_ratio);
   std::vector<VertexBend> bends;
   for (Vec3& vertex : polygons.vertices) {
-    bends.push_back(bent.bend(vertex.x(), vertex.y()));
-    vertex = bent.place(vertex.x(), vertex.y()) + 0.5 * cells.height_um * Vec3::UnitZ();
+    bends.push_back(curved.bend(vertex.x(), vertex.y()));
+    vertex = curved.place(vertex.x(), vertex.y()) + 0.5 * cells.height_um * Vec3::UnitZ();
   }
   const ExtrudedSheet sheet = extrude(polygons, bends, std::array{cells.height_um});
   Tissue tissue = tissue_from_prisms(sheet, cells.split, cells.layers);

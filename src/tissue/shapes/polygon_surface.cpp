@@ -59,10 +59,10 @@ class Moves {
 
   [[nodiscard]] bool any() const { return any_; }
 
-  void apply(const MendingGround& ground, Vectors& vertices) const {
+  void apply(const MendingRules& rules, Vectors& vertices) const {
     for (std::size_t v = 0; v < vertices.size(); ++v)
       if (const Vec3& move = moves_[periods_.original(v)]; !move.isZero(0))
-        vertices[v] = ground.allowed(v, vertices[v] + move);
+        vertices[v] = rules.allowed(v, vertices[v] + move);
   }
 
  private:
@@ -71,12 +71,12 @@ class Moves {
   bool any_ = false;
 };
 
-std::size_t lengthen_edges(const std::vector<PolygonEdge>& edges, const MendingGround& ground, double least_um,
+std::size_t lengthen_edges(const std::vector<PolygonEdge>& edges, const MendingRules& rules, double least_um,
                            const Vectors& vertices, Moves& moves) {
   std::size_t count = 0;
   for (const PolygonEdge& edge : edges) {
     const auto [from, to] = edge.vertices;
-    const Vec3 direction = ground.along(edge);
+    const Vec3 direction = rules.along(edge);
     const double length = (vertices[to] - vertices[from]).dot(direction);
     if (length >= least_um) continue;
     ++count;
@@ -187,7 +187,7 @@ std::vector<double> polygon_angles_deg(const Vectors& vertices, const std::vecto
   return angles;
 }
 
-MendedPolygons mend_polygons(const MendingGround& ground, const PolygonOptions& options, PolygonSurface& surface) {
+MendedPolygons mend_polygons(const MendingRules& rules, const PolygonOptions& options, PolygonSurface& surface) {
   MendedPolygons mended;
   Vectors& vertices = surface.vertices;
   const Vectors start = vertices;
@@ -195,14 +195,14 @@ MendedPolygons mend_polygons(const MendingGround& ground, const PolygonOptions& 
   const double least_um = options.least_edge * mean_length(edges, vertices);
   for (;; ++mended.passes) {
     Moves moves(surface);
-    mended.left_edges = lengthen_edges(edges, ground, least_um, vertices, moves);
-    mended.left_corners = sharpen_corners(surface, ground.normals, options.largest_angle_deg, moves);
+    mended.left_edges = lengthen_edges(edges, rules, least_um, vertices, moves);
+    mended.left_corners = sharpen_corners(surface, rules.normals, options.largest_angle_deg, moves);
     if (mended.passes == 0) {
       mended.lengthened_edges = mended.left_edges;
       mended.sharpened_corners = mended.left_corners;
     }
     if (!moves.any() || mended.passes == most_passes) break;
-    moves.apply(ground, vertices);
+    moves.apply(rules, vertices);
   }
   for (std::size_t v = 0; v < vertices.size(); ++v)
     mended.furthest_move_um = std::max(mended.furthest_move_um, (vertices[v] - start[v]).norm());

@@ -83,13 +83,13 @@ struct MendedPolygons {
 };
 
 /// Orientation of the polygons of a surface, and admissible moves of their vertices.
-struct MendingGround {
+struct MendingRules {
   Vectors normals;                                                  // polygons; unit
   std::function<Vec3(const PolygonEdge&)> along;                    // direction of an edge, present or intended; unit
   std::function<Vec3(std::size_t vertex, const Vec3& to)> allowed;  // admissible place nearest to `to`
 };
 
-MendedPolygons mend_polygons(const MendingGround& ground, const PolygonOptions& options, PolygonSurface& surface);
+MendedPolygons mend_polygons(const MendingRules& rules, const PolygonOptions& options, PolygonSurface& surface);
 
 /// Return remarks on the repairs; empty if none.
 std::vector<std::string> remarks_on(const MendedPolygons& mended);

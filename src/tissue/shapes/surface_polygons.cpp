@@ -211,13 +211,13 @@ Vectors points_on(const Vectors& points, const StarSurface& surface, double furt
 // short one may run backwards a little.
 MendedPolygons mend_about(const Vectors& points, const StarSurface& surface, const PolygonOptions& options,
                           PolygonSurface& polygons) {
-  MendingGround ground;
-  for (const Vec3& point : points) ground.normals.push_back(surface.bend(point).normal);
-  ground.along = [&](const PolygonEdge& edge) {
-    return Vec3(ground.normals[edge.left].cross(points[edge.right] - points[edge.left]).normalized());
+  MendingRules rules;
+  for (const Vec3& point : points) rules.normals.push_back(surface.bend(point).normal);
+  rules.along = [&](const PolygonEdge& edge) {
+    return Vec3(rules.normals[edge.left].cross(points[edge.right] - points[edge.left]).normalized());
   };
-  ground.allowed = [&](std::size_t, const Vec3& to) { return surface.put_on(to); };
-  return mend_polygons(ground, options, polygons);
+  rules.allowed = [&](std::size_t, const Vec3& to) { return surface.put_on(to); };
+  return mend_polygons(rules, options, polygons);
 }
 
 // As many as bring the areas' variation to 8 % from a random start; more would make a crystal of it.
