@@ -76,7 +76,7 @@ void add_check_command(CLI::App& app, int&) {
     const Scenario scenario = options->load();
     std::optional<DelayedNotice> notice(std::in_place);
     const auto model = make_model(scenario);
-    (void)make_watch(scenario, *model);
+    (void)make_measure_plan(scenario, *model);
     (void)make_solved_side(scenario, *model);
     notice.reset();
     fmt::print("{}", resolved_toml(scenario));

@@ -43,11 +43,11 @@ Activity activity_of(pid_t process) {
 }
 
 /// Read to the end; empty on an error. Stalled: no output while the process sleeps for `stall_s`.
-struct Answer {
+struct ChildOutput {
   std::optional<std::string> output;
   bool stalled = false;
 };
-Answer read_all(int pipe_end, pid_t child, double stall_s) {
+ChildOutput read_all(int pipe_end, pid_t child, double stall_s) {
   using Clock = std::chrono::steady_clock;
   std::string output, block(1 << 16, '\0');
   Clock::time_point last_sign = Clock::now();
@@ -168,7 +168,7 @@ std::optional<std::string> output_of_child(const std::string& what, const std::f
     return write_all(end, output.data(), output.size()) ? 0 : 1;
   });
   nobody_works.unlock();
-  Answer answer = read_all(child.end(), child.id(), stall_s);
+  ChildOutput answer = read_all(child.end(), child.id(), stall_s);
   if (answer.stalled) {
     child.send(SIGKILL);
     throw FileError(

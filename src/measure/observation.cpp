@@ -4,10 +4,10 @@
 
 namespace plica {
 
-Observer::Observer(const Model& model, Watch watch) : watch_(std::move(watch)) {
-  begin(measure_sets().front(), {model}, watch_.sets);
+Observer::Observer(const Model& model, MeasurePlan measure_plan) : plan_(std::move(measure_plan)) {
+  begin(measure_sets().front(), {model}, plan_.sets);
   for (const Column& column : plica::columns())
-    if (watch_.sets.contains(column.set)) columns_.push_back(&column);
+    if (plan_.sets.contains(column.set)) columns_.push_back(&column);
 }
 
 Observation Observer::observe(const Moment& moment, const AcceptedStep* step) const {
@@ -15,21 +15,21 @@ Observation Observer::observe(const Moment& moment, const AcceptedStep* step) co
   ColumnInput measured(moment.model, moment.state, step);
   for (const Column* column : columns_) {
     if (!column->of_step) continue;
-    measured.kept = &watch_.sets.at(column->set);
+    measured.kept = &plan_.sets.at(column->set);
     row[*column] = column->of_step(measured);
   }
 
   std::vector<Reading> readings;
-  for (const Monitor& monitor : watch_.monitors) readings.push_back(read_monitor(monitor, moment));
+  for (const Monitor& monitor : plan_.monitors) readings.push_back(read_monitor(monitor, moment));
   for (const Reading& reading : readings) row.monitors.push_back(reading.number);
-  row.criteria_met = watch_.stop.met(readings);
-  row.is_over = watch_.stop.is_over(row.criteria_met.size(), step != nullptr && step->at_equilibrium);
+  row.criteria_met = plan_.stop.met(readings);
+  row.is_over = plan_.stop.is_over(row.criteria_met.size(), step != nullptr && step->at_equilibrium);
   return row;
 }
 
 void Observer::follow_division(const Tissue& tissue, const Division& division) {
   for (const MeasureSet& set : measure_sets())
-    if (const auto kept = watch_.sets.find(set.name); kept != watch_.sets.end() && set.follow_division)
+    if (const auto kept = plan_.sets.find(set.name); kept != plan_.sets.end() && set.follow_division)
       set.follow_division(kept->second, tissue, division);
 }
 

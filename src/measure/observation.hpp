@@ -45,7 +45,7 @@ struct Observation {
 };
 
 /// Sets, monitors and stop criteria of a scenario.
-struct Watch {
+struct MeasurePlan {
   KeptBySet sets;
   std::vector<Monitor> monitors;
   StopRule stop;
@@ -54,17 +54,17 @@ struct Watch {
 /// Measures the steps of a run. `model`: the model at the time measured.
 class Observer {
  public:
-  explicit Observer(const Model& model, Watch watch = {});
+  explicit Observer(const Model& model, MeasurePlan measure_plan = {});
   /// Measure the end of a step; null: the reference state, before the first.
   [[nodiscard]] Observation observe(const Moment& moment, const AcceptedStep* step) const;
-  [[nodiscard]] const std::vector<Monitor>& monitors() const { return watch_.monitors; }
+  [[nodiscard]] const std::vector<Monitor>& monitors() const { return plan_.monitors; }
   /// Columns that are measured.
   [[nodiscard]] const ColumnList& columns() const { return columns_; }
   /// What a set keeps over the run; null if it is not measured.
   template <class Kept>
   [[nodiscard]] const Kept* kept(std::string_view set) const {
-    const auto found = watch_.sets.find(set);
-    return found == watch_.sets.end() ? nullptr : std::any_cast<Kept>(&found->second);
+    const auto found = plan_.sets.find(set);
+    return found == plan_.sets.end() ? nullptr : std::any_cast<Kept>(&found->second);
   }
 
   /// Skip these columns from now on.
@@ -76,7 +76,7 @@ class Observer {
   void follow_division(const Tissue& tissue, const Division& division);
 
  private:
-  Watch watch_;
+  MeasurePlan plan_;
   ColumnList columns_;
 };
 

@@ -28,7 +28,7 @@ ObstacleContacts::ObstacleContacts(const Model& model) {
 
 Obstacle::Gap ObstacleContacts::gap(std::size_t contact, std::span<const Vec3> positions) const {
   const Vec3& position = positions[nodes_[contact].index()];
-  std::optional<Answer>& last = last_[contact];
+  std::optional<CachedGap>& last = last_[contact];
   // Bitwise comparison, so that earlier queries have no effect (0 and -0 are equal).
   if (!last || std::memcmp(last->position.data(), position.data(), sizeof(Vec3)) != 0)
     last = {position, obstacles_[contact]->gap(position)};

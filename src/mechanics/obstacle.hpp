@@ -64,11 +64,11 @@ class ObstacleContacts {
   std::vector<std::size_t> by_node_;        // contacts, sorted by node
   std::vector<std::size_t> starts_;         // node_count + 1, in by_node_
 
-  struct Answer {
+  struct CachedGap {
     Vec3 position;
     Obstacle::Gap gap;
   };
-  mutable std::vector<std::optional<Answer>> last_;  // contacts
+  mutable std::vector<std::optional<CachedGap>> last_;  // contacts
 };
 
 }  // namespace plica

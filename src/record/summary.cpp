@@ -88,10 +88,10 @@ std::optional<double> value_at(const std::vector<Observation>& rows, std::size_t
 
 constexpr double least_change = 0.005;  // smallest reported change of a ratio
 
-// Parts of the line; values that the run lacks are left out.
-class Parts {
+// Last line of a run; values that the run lacks are left out.
+class SummaryLine {
  public:
-  explicit Parts(const Json& summary) : summary_(summary) {}
+  explicit SummaryLine(const Json& summary) : summary_(summary) {}
 
   void value(const char* words, const char* key, const char* unit = "", const char* after = "") {
     if (const auto number = number_of(summary_, key)) text(fmt::format("{} {:.2f}{}{}", words, *number, unit, after));
@@ -107,15 +107,15 @@ class Parts {
   std::vector<std::string> parts_;
 };
 
-void add_furrow(const Json& summary, Parts& parts) {
-  parts.value("furrow depth", "furrow_depth_um", " um");
-  parts.value("apical area ratio", "vml_apical_area_ratio", "", " (midline centre)");
-  parts.value("peak speed ratio", "peak_speed_ratio", "", " (end/centre)");
+void add_furrow(const Json& summary, SummaryLine& line) {
+  line.value("furrow depth", "furrow_depth_um", " um");
+  line.value("apical area ratio", "vml_apical_area_ratio", "", " (midline centre)");
+  line.value("peak speed ratio", "peak_speed_ratio", "", " (end/centre)");
   const auto closed = number_of(summary, "lips_closed"), closed_s = number_of(summary, "lips_closed_time_s");
   if (closed && closed_s)
-    parts.text(fmt::format("lips {} at {}", *closed == 1 ? "closed" : "open again, closed", moment(*closed_s)));
+    line.text(fmt::format("lips {} at {}", *closed == 1 ? "closed" : "open again, closed", moment(*closed_s)));
   else if (closed)
-    parts.text("lips open");
+    line.text("lips open");
 }
 
 }  // namespace
@@ -164,19 +164,19 @@ Json make_summary(const Scenario& scenario, const Simulation& simulation, const 
 }
 
 std::string outcome_text(const Scenario& scenario, const Tissue& tissue, const Json& summary) {
-  Parts parts(summary);
+  SummaryLine line(summary);
   if (have_furrow(axes_of(scenario.embryo)) && number_of(summary, "vml_apical_area_ratio")) {
-    add_furrow(summary, parts);
+    add_furrow(summary, line);
   } else {
-    parts.value("fold depth", "furrow_depth_um", " um");
-    parts.value("largest displacement", "max_displacement_um", " um");
-    parts.value("smallest apical area ratio", "min_apical_area_ratio");
-    parts.change("lumen volume ratio", "lumen_volume_ratio");
+    line.value("fold depth", "furrow_depth_um", " um");
+    line.value("largest displacement", "max_displacement_um", " um");
+    line.value("smallest apical area ratio", "min_apical_area_ratio");
+    line.change("lumen volume ratio", "lumen_volume_ratio");
   }
   if (const auto divisions = number_of(summary, "divisions").value_or(0); divisions > 0)
-    parts.text(fmt::format("{} cells after {} division{}", tissue.cells.size(), divisions, divisions == 1 ? "" : "s"));
-  parts.change("tissue volume ratio", "tissue_volume_ratio");
-  return parts.line();
+    line.text(fmt::format("{} cells after {} division{}", tissue.cells.size(), divisions, divisions == 1 ? "" : "s"));
+  line.change("tissue volume ratio", "tissue_volume_ratio");
+  return line.line();
 }
 
 std::string crossing_text(const Scenario& scenario, const Json& summary) {

@@ -13,7 +13,7 @@
 namespace plica {
 
 /// Place where a key was set last. Layers count from the deepest base; `--set` is the last.
-struct Place {
+struct KeyPlace {
   std::string file;
   int line = 0;
   int layer = 0;
@@ -23,11 +23,11 @@ struct Place {
 
 struct Input {
   std::string file;  // the scenario's own
-  std::map<std::string, Place> places;
+  std::map<std::string, KeyPlace> places;
   std::set<std::string> doubtful;  // addresses with an error, skipped by rules between keys
   std::vector<Diagnostic> diagnostics;
 
-  [[nodiscard]] const Place* place(const std::string& address) const {
+  [[nodiscard]] const KeyPlace* place(const std::string& address) const {
     const auto found = places.find(address);
     return found == places.end() ? nullptr : &found->second;
   }
@@ -37,13 +37,13 @@ struct Input {
   /// Whether `address` was set in the same layer as `chooser` or later, so it cannot belong to another, inherited
   /// choice.
   [[nodiscard]] bool given_with(const std::string& address, const std::string& chooser) const {
-    const Place *given = place(address), *choice = place(chooser);
+    const KeyPlace *given = place(address), *choice = place(chooser);
     return given != nullptr && (choice == nullptr || given->layer >= choice->layer);
   }
 
   /// Adds an error at the place of `address`, or of the enclosing table if the key was not set.
   void report(const std::string& address, std::string problem, std::string remedy) {
-    const Place* here = place(address);
+    const KeyPlace* here = place(address);
     const std::string key = here != nullptr ? here->written : address;
     for (std::string around = address; here == nullptr && around.find('.') != std::string::npos;) {
       around.resize(around.rfind('.'));

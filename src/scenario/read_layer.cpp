@@ -312,7 +312,7 @@ class Reader {
   void read_value(const KeyRow& row, const std::string& name, const std::string& path, const std::string& written,
                   const toml::key& key, const toml::node& node) {
     const std::string address = joined(path, row.options.instead_of.empty() ? row.key : row.options.instead_of);
-    if (const Place* before = input_.place(address); before != nullptr && before->row != &row) {
+    if (const KeyPlace* before = input_.place(address); before != nullptr && before->row != &row) {
       if (before->layer == layer_.number) {
         report(key, written, fmt::format("conflicts with {}, which is also set", before->written),
                "remove one of them");

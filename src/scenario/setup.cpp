@@ -376,16 +376,16 @@ void set_default_shell(Scenario& scenario) {
              "remove drag_Pa_s_per_um, or set vitelline.enabled to true");
 }
 
-Watch make_watch(const Scenario& scenario, const Model& model) {
-  Watch watch;
+MeasurePlan make_measure_plan(const Scenario& scenario, const Model& model) {
+  MeasurePlan plan;
   std::vector<Diagnostic> errors;
-  begin_sets(scenario, model, watch.sets, errors);
+  begin_sets(scenario, model, plan.sets, errors);
   const Tissue& tissue = model.tissue;
   for (const auto& [name, input] : scenario.monitors) {
     const std::string path = "monitor." + name;
     try {
-      watch.monitors.push_back(make_monitor(name, input, scenario));
-      if (!reads_something(watch.monitors.back(), tissue))
+      plan.monitors.push_back(make_monitor(name, input, scenario));
+      if (!reads_something(plan.monitors.back(), tissue))
         errors.push_back(diagnostic_at(scenario, path + ".face",
                                        fmt::format("no cell of region \"{}\" has this face", input.region),
                                        "change region or face"));
@@ -394,8 +394,8 @@ Watch make_watch(const Scenario& scenario, const Model& model) {
     }
   }
   if (!errors.empty()) throw ScenarioError(std::move(errors));
-  watch.stop = make_stop_rule(scenario);
-  return watch;
+  plan.stop = make_stop_rule(scenario);
+  return plan;
 }
 
 }  // namespace plica

@@ -45,6 +45,6 @@ void set_default_shell(Scenario& scenario);
 
 /// Begins the measure sets, makes monitors in the order of their names, opens their references, and makes the stop
 /// criteria. `model`: of the whole tissue. Throws ScenarioError for errors that depend on the tissue or on files.
-Watch make_watch(const Scenario& scenario, const Model& model);
+MeasurePlan make_measure_plan(const Scenario& scenario, const Model& model);
 
 }  // namespace plica

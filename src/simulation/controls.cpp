@@ -83,7 +83,7 @@ RunControls make_controls(const Scenario& scenario) {
   controls.position_tolerance_um = scenario.time.tolerance_um;
   controls.end_s = scenario.time.end_s;
   controls.equilibrium_speed_um_per_s = scenario.stop.equilibrium_speed_um_per_min * units::um_per_minute;
-  // Equilibrium required together with criteria is one of them (make_watch).
+  // Equilibrium required together with criteria is one of them (make_measure_plan).
   const bool all_at_once = meaning_of(words::combinations, scenario.stop.combine) && !scenario.criteria.empty();
   controls.stop_at_equilibrium = scenario.stop.at_equilibrium && !all_at_once;
   controls.frame_every_s = scenario.output.frame_every_s;

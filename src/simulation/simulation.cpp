@@ -86,7 +86,7 @@ Simulation::Parts parts_of(const Scenario& scenario) {
   Simulation::Parts parts;
   parts.model = make_model(scenario);
   parts.controls = make_controls(scenario);
-  parts.watch = make_watch(scenario, *parts.model);
+  parts.measure_plan = make_measure_plan(scenario, *parts.model);
   parts.scenario = std::make_shared<const Scenario>(scenario);
   if (auto side = make_solved_side(scenario, *parts.model))
     parts.full_model.emplace(std::move(*std::exchange(parts.model, std::move(side->model))), std::move(side->mirror));
@@ -101,7 +101,7 @@ Simulation::Simulation(Parts parts)
       full_model_(std::move(parts.full_model)),
       controls_(std::move(parts.controls)),
       step_length_(controls_),
-      observer_(model(), std::move(parts.watch)) {
+      observer_(model(), std::move(parts.measure_plan)) {
   for (const auto& law : model_->laws) {
     std::ranges::copy(law->program_points_s(), std::back_inserter(controls_.program_points_s));
     std::ranges::copy(law->program_jumps_s(), std::back_inserter(controls_.program_jumps_s));

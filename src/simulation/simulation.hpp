@@ -49,7 +49,7 @@ class Simulation {
   struct Parts {
     std::unique_ptr<Model> model;
     RunControls controls;
-    Watch watch = {};  // what is measured
+    MeasurePlan measure_plan = {};  // what is measured
     std::optional<FullModel> full_model = {};
     std::shared_ptr<const Scenario> scenario = {};  // names remedies of a failure; null: none
   };

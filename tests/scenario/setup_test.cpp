@@ -293,23 +293,23 @@ TEST(MonitorRules, SetReachesCriteriaAndExpectations) {
   EXPECT_EQ(scenario.expect.at("floor.position_um").within, 2);
 }
 
-TEST(Watch, MakesMonitorsAndCriteriaOfAScenario) {
+TEST(MeasurePlan, MakesMonitorsAndCriteriaOfAScenario) {
   Tissue tissue = build_shell({.length_um = 460, .cells = {18, 9, 8}});
   tissue.regions["belly"] = tissue.regions.at("all");
-  const Watch watch = make_watch(scenario_of(rich), Model(tissue));
-  ASSERT_EQ(watch.monitors.size(), 2U);
-  EXPECT_EQ(watch.monitors[0].column(), "clock.time_s");
-  EXPECT_EQ(watch.monitors[1].column(), "floor.position_um");
-  EXPECT_EQ(watch.monitors[1].axis, 2);
-  EXPECT_EQ(watch.monitors[1].over, Over::max);
-  EXPECT_EQ(watch.monitors[1].face, Monitor::Face::apical);
-  EXPECT_TRUE(watch.stop.all);
-  EXPECT_FALSE(watch.stop.needs_rest);
-  ASSERT_EQ(watch.stop.criteria.size(), 2U);
-  EXPECT_EQ(watch.stop.criteria[0].monitor, 1U);  // deep is on floor
-  EXPECT_EQ(watch.stop.criteria[0].over, Criterion::Over::any);
-  EXPECT_EQ(watch.stop.criteria[1].monitor, 0U);  // late on clock
-  EXPECT_EQ(watch.stop.criteria[1].above, 60);
+  const MeasurePlan plan = make_measure_plan(scenario_of(rich), Model(tissue));
+  ASSERT_EQ(plan.monitors.size(), 2U);
+  EXPECT_EQ(plan.monitors[0].column(), "clock.time_s");
+  EXPECT_EQ(plan.monitors[1].column(), "floor.position_um");
+  EXPECT_EQ(plan.monitors[1].axis, 2);
+  EXPECT_EQ(plan.monitors[1].over, Over::max);
+  EXPECT_EQ(plan.monitors[1].face, Monitor::Face::apical);
+  EXPECT_TRUE(plan.stop.all);
+  EXPECT_FALSE(plan.stop.needs_rest);
+  ASSERT_EQ(plan.stop.criteria.size(), 2U);
+  EXPECT_EQ(plan.stop.criteria[0].monitor, 1U);  // deep is on floor
+  EXPECT_EQ(plan.stop.criteria[0].over, Criterion::Over::any);
+  EXPECT_EQ(plan.stop.criteria[1].monitor, 0U);  // late on clock
+  EXPECT_EQ(plan.stop.criteria[1].above, 60);
 }
 
 std::string program_errors(const std::string& override_text) {

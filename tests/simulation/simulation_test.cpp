@@ -151,7 +151,7 @@ TEST(Simulation, StopsWhenAskedAndGoesOnWhenAskedAgain) {
 }
 
 TEST(Simulation, ACriterionEndsItAsPlannedAndAtRestAsEquilibrium) {
-  Watch soon;
+  MeasurePlan soon;
   Monitor& clock = soon.monitors.emplace_back();
   clock.name = "clock";
   clock.quantity = Quantity::time;
@@ -163,7 +163,7 @@ TEST(Simulation, ACriterionEndsItAsPlannedAndAtRestAsEquilibrium) {
   EXPECT_LT(early.time_s(), 1);
 
   RunControls controls{.end_s = 1e5, .equilibrium_speed_um_per_s = 1e-3, .stop_at_equilibrium = false};
-  Watch at_rest = soon;
+  MeasurePlan at_rest = soon;
   at_rest.stop.all = at_rest.stop.needs_rest = true;
   const Simulation late = ran(dimpling_sheet(), controls, {}, at_rest);
   EXPECT_EQ(late.status(), RunStatus::equilibrium);

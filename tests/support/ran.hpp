@@ -10,7 +10,7 @@ namespace plica::support {
 using StepWatcher = std::function<void(const AcceptedStep&, const Model&)>;
 
 /// The model, run from rest to its end.
-inline Simulation ran(Model model, RunControls controls, const StepWatcher& watch = {}, Watch criteria = {}) {
+inline Simulation ran(Model model, RunControls controls, const StepWatcher& watch = {}, MeasurePlan criteria = {}) {
   struct Listener final : SimulationListener {
     void step_accepted(const AcceptedStep& step, const Observation& /*measures*/) override { watch(step, run.model()); }
     Listener(const StepWatcher& watcher, const Simulation& of) : watch(watcher), run(of) {}

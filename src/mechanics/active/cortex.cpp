@@ -198,17 +198,17 @@ std::vector<double> Cortex::areas(std::span<const Vec3> positions) const {
   return areas;
 }
 
-Cortex::Pull Cortex::kernel_arrays(const Step& step) const {
-  Pull pull{{}, areas(step.positions), std::vector<double>(places(), 0.0)};
-  pull.of_tensions.resize(places(), 0.0);
+Cortex::FaceTensions Cortex::kernel_arrays(const Step& step) const {
+  FaceTensions faces{{}, areas(step.positions), std::vector<double>(places(), 0.0)};
+  faces.of_tensions.resize(places(), 0.0);
   chunks_.for_elements([&](std::size_t f) {
-    const Response response = respond(f, pull.of_tensions[f], step, false);
-    pull.of_tensions[f] = response.tension;
-    pull.of_slopes[f] = response.slope;
+    const Response response = respond(f, faces.of_tensions[f], step, false);
+    faces.of_tensions[f] = response.tension;
+    faces.of_slopes[f] = response.slope;
   });
-  static_cast<FaceArrays&>(pull) = {batches_.data(),         faces_.size(),         components(step.positions),
-                                    pull.of_tensions.data(), pull.of_slopes.data(), step.semidefinite_tangent};
-  return pull;
+  static_cast<FaceArrays&>(faces) = {batches_.data(),          faces_.size(),          components(step.positions),
+                                     faces.of_tensions.data(), faces.of_slopes.data(), step.semidefinite_tangent};
+  return faces;
 }
 
 std::vector<double> Cortex::tensions(const Step& step) const {

@@ -86,10 +86,10 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   [[nodiscard]] Response elastic(std::size_t face, double area, const Step& step, double b, bool with_energy) const;
   [[nodiscard]] Response crowded(std::size_t face, double area, bool with_energy) const;
   [[nodiscard]] double stiffening_of(std::size_t face, const Step& step) const;
-  struct Pull : FaceArrays {                     // all faces at the end of a step
+  struct FaceTensions : FaceArrays {             // all faces at the end of a step
     std::vector<double> of_tensions, of_slopes;  // faces, filled up to whole batches
   };
-  [[nodiscard]] Pull kernel_arrays(const Step& step) const;
+  [[nodiscard]] FaceTensions kernel_arrays(const Step& step) const;
   [[nodiscard]] bool flows() const { return rule_.relaxation_s > 0; }
   [[nodiscard]] double rest_area_before(std::size_t face, const Step& step) const;
   class Origins;  // faces before a division that faces after it come from

@@ -36,7 +36,7 @@ class ConstraintJacobian {
         sources_.push_back(std::move(source));
       });
     }
-    find_touches();
+    find_row_slots();
   }
 
   /// Rows: functions of few nodes first, in order of their constraints, then dense ones.
@@ -129,12 +129,12 @@ class ConstraintJacobian {
   }
 
   /// Sparse row that depends on a node, and the index of that gradient in the row.
-  struct Touch {
+  struct RowSlot {
     int row, slot;
   };
   /// Return the sparse rows of one free node, ascending.
-  [[nodiscard]] std::span<const Touch> around(std::size_t node) const {
-    return {touches_.data() + node_start_[node], touches_.data() + node_start_[node + 1]};
+  [[nodiscard]] std::span<const RowSlot> around(std::size_t node) const {
+    return {row_slots_.data() + node_start_[node], row_slots_.data() + node_start_[node + 1]};
   }
 
   /// Return a dense row, one Vec3 per free node. `row`: from 0.
@@ -222,14 +222,14 @@ class ConstraintJacobian {
       }
     dense_.resize(dense_.size() + functions, Vectors(tissue.free_node_count()));
   }
-  void find_touches() {
+  void find_row_slots() {
     for (const Gradient& gradient : gradients_) ++node_start_[gradient.node.index() + 1];
     for (std::size_t n = 0; n + 1 < node_start_.size(); ++n) node_start_[n + 1] += node_start_[n];
-    touches_.resize(gradients_.size());
+    row_slots_.resize(gradients_.size());
     std::vector<std::size_t> next(node_start_.begin(), node_start_.end() - 1);
     for (int row = 0; row < static_cast<int>(sparse_rows()); ++row) {
       int slot = 0;
-      for (const Gradient& gradient : of_row(row)) touches_[next[gradient.node.index()]++] = {row, slot++};
+      for (const Gradient& gradient : of_row(row)) row_slots_[next[gradient.node.index()]++] = {row, slot++};
     }
   }
   [[nodiscard]] double rate(std::size_t row, std::span<const Vec3> direction) const {
@@ -246,7 +246,7 @@ class ConstraintJacobian {
   std::vector<std::size_t> start_ = {0};                     // sparse rows + 1
   std::vector<Gradient> gradients_;
   std::vector<std::size_t> node_start_;  // free nodes + 1
-  std::vector<Touch> touches_;
+  std::vector<RowSlot> row_slots_;
   std::vector<Vectors> dense_;  // dense rows; one Vec3 per free node
 };
 

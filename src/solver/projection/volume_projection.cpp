@@ -162,17 +162,17 @@ VolumeProjection::VolumeProjection(const Model& model, const std::optional<Proje
       const std::size_t first = tissue.cells[c].first_element.index();
       for (std::size_t e = first; e < first + tissue.cells[c].element_count; ++e)
         add_facets(tissue.elements[e], facets);
-      kept_.push_back({ClosedSurface(facets), targets[c], CellId(c)});
+      volumes_.push_back({ClosedSurface(facets), targets[c], CellId(c)});
     }
   } else if (rule_.surfaces == ProjectionRule::Surfaces::tissue) {
     for (const auto& element : tissue.elements) add_facets(element, facets);
     double target = 0;
     for (const double of_cell : targets) target += of_cell;
-    kept_.push_back({ClosedSurface(facets), target, std::nullopt});
+    volumes_.push_back({ClosedSurface(facets), target, std::nullopt});
   } else {
     ClosedSurface surface(tissue.apical_facets);
     const double target = volume_inside(surface, tissue.rest_positions);
-    kept_.push_back({std::move(surface), target, std::nullopt});
+    volumes_.push_back({std::move(surface), target, std::nullopt});
   }
 }
 
@@ -224,11 +224,11 @@ bool VolumeProjection::project_obstacles(Vectors& positions) {
   return moved;
 }
 
-// Sets points_, gradient_ and direction_, along which its nodes go, to those of a surface. Returns V - target.
-double VolumeProjection::look_at(const Kept& kept, const Vectors& positions) {
-  const std::vector<NodeId>& nodes = kept.surface.nodes();
-  kept.surface.gather(positions, points_);
-  kept.surface.gradient(points_, gradient_);
+// Return V - target of a surface, and set points_, gradient_ and direction_ (of the moves of its nodes) to its own.
+double VolumeProjection::volume_excess(const ProjectedVolume& volume, const Vectors& positions) {
+  const std::vector<NodeId>& nodes = volume.surface.nodes();
+  volume.surface.gather(positions, points_);
+  volume.surface.gradient(points_, gradient_);
   direction_ = gradient_;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const std::size_t n = nodes[i].index();
@@ -236,21 +236,21 @@ double VolumeProjection::look_at(const Kept& kept, const Vectors& positions) {
     for (int axis = 0; axis < 3; ++axis)
       if (model_.held[n][axis]) direction_[i][axis] = 0;
   }
-  return dot(points_, gradient_) / 3 - kept.target;
+  return dot(points_, gradient_) / 3 - volume.target;
 }
 
 void VolumeProjection::move(std::size_t k, double l, Vectors& positions) {
-  const std::vector<NodeId>& nodes = kept_[k].surface.nodes();
+  const std::vector<NodeId>& nodes = volumes_[k].surface.nodes();
   for (std::size_t i = 0; i < nodes.size(); ++i) positions[nodes[i].index()] += l * direction_[i];
   moved_[k] += l;
 }
 
 // Project the volume of one surface; true if it needed a correction.
 bool VolumeProjection::project(std::size_t k, Vectors& positions, StepReport& report) {
-  const Kept& kept = kept_[k];
-  const double excess = look_at(kept, positions);
-  if (std::abs(excess) <= rule_.tolerance * kept.target) return false;
-  Cubic cubic = kept.surface.volume_along(points_, gradient_, direction_, scratch_);
+  const ProjectedVolume& volume = volumes_[k];
+  const double excess = volume_excess(volume, positions);
+  if (std::abs(excess) <= rule_.tolerance * volume.target) return false;
+  Cubic cubic = volume.surface.volume_along(points_, gradient_, direction_, scratch_);
   cubic.c0 = excess;
   if (!(cubic.c1 > 0)) return true;  // nothing of it can move
   ++report.cubics;
@@ -261,11 +261,11 @@ bool VolumeProjection::project(std::size_t k, Vectors& positions, StepReport& re
 
 // Goes as far as in the step before: next to rest that is nearly all of the way.
 void VolumeProjection::repeat_last_step(const State& before, double duration_s, State& after) {
-  moved_.assign(kept_.size(), 0.0);
+  moved_.assign(volumes_.size(), 0.0);
   pushed_.assign(after.obstacle_forces.size(), 0.0);
-  for (std::size_t k = 0; k < kept_.size(); ++k)
-    if (const auto& cell = kept_[k].cell; cell && before.multipliers[cell->index()] != 0) {
-      look_at(kept_[k], after.positions);
+  for (std::size_t k = 0; k < volumes_.size(); ++k)
+    if (const auto& cell = volumes_[k].cell; cell && before.multipliers[cell->index()] != 0) {
+      volume_excess(volumes_[k], after.positions);
       move(k, before.multipliers[cell->index()] * duration_s, after.positions);
     }
   for (std::size_t k = 0; k < pushed_.size(); ++k)
@@ -280,7 +280,7 @@ double VolumeProjection::obstacle_weight(std::size_t k, double duration_s) const
 // Remaining errors of volumes and obstacles.
 void VolumeProjection::judge(const Vectors& positions, StepReport& report) const {
   report.constraint_error = report.outside_um = 0;
-  for (const auto& [surface, target, cell] : kept_) {
+  for (const auto& [surface, target, cell] : volumes_) {
     const double error = std::abs(volume_inside(surface, positions) / target - 1);
     if (error <= report.constraint_error) continue;
     report.constraint_error = error;
@@ -302,13 +302,13 @@ void VolumeProjection::apply(const State& before, double duration_s, const std::
       return;
     }
     moved = project_obstacles(after.positions);
-    for (std::size_t k = 0; k < kept_.size(); ++k) moved = project(k, after.positions, report) || moved;
+    for (std::size_t k = 0; k < volumes_.size(); ++k) moved = project(k, after.positions, report) || moved;
   }
   judge(after.positions, report);
   report.status = moved ? StepReport::Status::not_projected : StepReport::Status::converged;
   if (!moved) report.cell.reset();
-  for (std::size_t k = 0; k < kept_.size(); ++k)
-    if (kept_[k].cell) after.multipliers[kept_[k].cell->index()] += moved_[k] / duration_s;
+  for (std::size_t k = 0; k < volumes_.size(); ++k)
+    if (volumes_[k].cell) after.multipliers[volumes_[k].cell->index()] += moved_[k] / duration_s;
   for (std::size_t k = 0; k < pushed_.size(); ++k) {
     after.obstacle_forces[k] += pushed_[k] / obstacle_weight(k, duration_s);
     after.on_obstacle[k] = after.obstacle_forces[k] > 0;

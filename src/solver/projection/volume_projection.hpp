@@ -80,7 +80,7 @@ class VolumeProjection {
              StepReport& report);
 
  private:
-  struct Kept {
+  struct ProjectedVolume {
     ClosedSurface surface;
     double target;
     std::optional<CellId> cell;
@@ -92,14 +92,14 @@ class VolumeProjection {
   void push(std::size_t k, double distance_um, Vectors& positions);
   bool project_obstacles(Vectors& positions);
   bool project(std::size_t k, Vectors& positions, StepReport& report);
-  double look_at(const Kept& kept, const Vectors& positions);
+  double volume_excess(const ProjectedVolume& volume, const Vectors& positions);
   void move(std::size_t k, double l, Vectors& positions);
   void judge(const Vectors& positions, StepReport& report) const;
 
   const Model& model_;
   ObstacleContacts contacts_;
   ProjectionRule rule_;
-  std::vector<Kept> kept_;
+  std::vector<ProjectedVolume> volumes_;
   std::vector<double> weights_;                      // nodes; um/(nN s)
   std::vector<double> moved_;                        // kept surfaces; sum of l, kPa s
   std::vector<double> pushed_;                       // contacts; inward displacement of their nodes, um
