@@ -111,8 +111,8 @@ void divide_holds(Model& model, const Division& division) {
   model.held.resize(model.tissue.node_count(), {false, false, false});
 }
 
-// New nodes begin without contact: midway between two they lie inside the shell, on a chord of it. What a bent face
-// puts outside (it is blended from its edges, and need not lie between them) the next step takes back.
+// New nodes begin without contact: the midpoint of two nodes lies inside the shell. On a bent face, which is blended
+// from its edges, a node may lie outside; the next step projects it back.
 void divide_obstacles(Model& model, State& state, const Division& division) {
   std::vector<double> forces;
   std::vector<char> on_obstacle;

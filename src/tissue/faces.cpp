@@ -10,7 +10,7 @@
 namespace plica {
 namespace {
 
-// A half of what lies on a mirror plane, or at an end of a slice, is the other side's.
+// Half of a face on a mirror plane, or at an end of a slice, belongs to the other side.
 double share_of(const Tissue& tissue, const Face& face) {
   const double share = tissue.own_share(face.nodes);
   if (!tissue.is_endless || face.beyond || share < 1) return share;
@@ -101,7 +101,7 @@ std::vector<Face> all_lateral_faces(const Tissue& tissue) {
 
 constexpr double nothing_um = 1e-6;  // rounding
 
-// 0 of a cell that the midline cuts, 1 of one that it runs along, else -1.
+// Cell rows from the midline: 0 if the midline cuts it, 1 if it runs along its side; else -1.
 int start_at_midline(const Tissue& tissue, const Cell& cell, bool has_back) {
   double low = std::numeric_limits<double>::infinity(), high = -low, height = 0;
   int on_it = 0;

@@ -216,7 +216,7 @@ Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, 
   return tissue;
 }
 
-// The number that all of a cell's hexahedra have, or else their mean.
+// Value common to all hexahedra of a cell, or else their mean.
 CellArray of_cells(const CellArray& of_hexahedra, const SortedHexahedra& sorted) {
   CellArray values;
   for (std::size_t c = 0; c + 1 < sorted.first.size(); ++c) {

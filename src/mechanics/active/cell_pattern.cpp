@@ -93,7 +93,7 @@ PolygonSize size_half_way_up(const Tissue& tissue, const Cell& cell) {
   return {0.5 * twice_area.norm(), reach(along.normalized()), reach(normal.cross(along).normalized())};
 }
 
-// The mean width of polygons along an axis: what a line along it has in each polygon that it meets, on average.
+// Mean width of polygons along an axis: average length of their intersections with lines along it.
 std::optional<double> mean_width_of_polygons(const Tissue& tissue, const CellSet& cells, PatternAxis axis) {
   double area = 0, reach = 0;
   for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -184,8 +184,7 @@ double chance_factor(double spread, std::uint64_t seed, std::uint64_t cell) {
   return std::exp(std::sqrt(s2) * normal - 0.5 * s2);
 }
 
-// Places are told apart by a hundredth of a um. Its borders lie where no coordinate that is a round number does: there
-// rounding would decide.
+// Places are distinguished by steps of 0.01 um. Their limits avoid round coordinates, where rounding would decide.
 std::uint64_t place_number(const Vec3& place) {
   constexpr double apart_um = 0.01, offset = 0.381966;
   std::uint64_t number = 0;

@@ -47,9 +47,9 @@ std::vector<double> rest_face_areas(const Tissue& tissue, CellSide side) {
   return areas;
 }
 
-// The width that a line of the cell's stands for, for each of its shares: the face's area over the lengths of all lines
-// of that side and direction. A polygon's lines run every way: pulling alike they carry the same tension both along and
-// across, to which each contributes, so it is twice the area over the lengths of all.
+// Width that a line of the cell represents: area of the face over the total length of its lines of that side and
+// direction. Lines of a polygon run in all directions: under equal tension each contributes to the tension along and
+// across, so the width is twice the area over the length of all.
 double width_of(const Tissue& tissue, const Cell& cell, std::span<const ContractileLine> lines,
                 const ContractileLine& like, double area) {
   double shares = 0, length = 0;
@@ -67,7 +67,8 @@ double width_of(const Tissue& tissue, const Cell& cell, std::span<const Contract
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern& pattern, const ContractionRule& rule) {
   std::vector<Spring> springs;
   double factor = 1, delay = 0;  // of the cell at hand
-  // One spring a segment, in series: a part of the chain is stiffer than the whole by as much as it is shorter.
+  // One spring per segment, in series: a part of the chain is stiffer than the whole in inverse proportion to its
+  // length.
   const auto add = [&](std::size_t cell, const std::vector<NodeId>& chain, double ratio, double share, double in_series,
                        double tension) {
     if (ratio <= 0) return;
@@ -255,7 +256,7 @@ bool is_corner(const Tissue& tissue, CellId cell, NodeId node) {
   return std::ranges::find(corners, node) != corners.end();
 }
 
-// The chain with the nodes that cuts have put into it, its own cell's and its neighbours'.
+// Chain with the nodes inserted by cuts of its own cell and of neighbours.
 std::vector<NodeId> with_midway_nodes(const std::vector<NodeId>& chain, const Division& division) {
   std::vector<NodeId> nodes = {chain.front()};
   for (std::size_t i = 1; i < chain.size(); ++i) {
@@ -266,7 +267,7 @@ std::vector<NodeId> with_midway_nodes(const std::vector<NodeId>& chain, const Di
   return nodes;
 }
 
-// The daughters' parts of their mother's spring: two in series where it was cut, else the whole.
+// Springs of the daughters: two in series if the spring of the mother was cut, else the same spring.
 std::vector<Spring> inherit(const Spring& spring, CellId low, CellId high, const Tissue& tissue,
                             std::span<const Vec3> positions) {
   const auto& nodes = spring.nodes;

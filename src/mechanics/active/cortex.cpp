@@ -15,7 +15,8 @@ double area_at_rest(const Tissue& tissue, const Face& face) {
   return facet_area(corners);
 }
 
-// Strength of a face: of its cell, or the mean of the two whose wall it is; the tissue's share of that.
+// Strength of a face: that of its cell, or the mean of both cells of a wall; times the share of the face in this
+// tissue.
 double strength_of(const Face& face, const CellPattern& pattern) {
   const double own = pattern.strengths[face.cell.index()];
   return face.share * (face.beyond ? 0.5 * (own + pattern.strengths[face.beyond->index()]) : own);
@@ -27,14 +28,14 @@ std::vector<Face> acting_faces(const Tissue& tissue, CellSide side, const CellPa
   return faces;
 }
 
-// As elements whose corners are those of the face, twice.
+// Chunks of faces, each as an element that lists the corners of the face twice.
 ElementChunks chunks_of(const Tissue& tissue, const std::vector<std::array<NodeId, 4>>& faces) {
   std::vector<std::array<NodeId, 8>> corners;
   for (const auto& n : faces) corners.push_back({n[0], n[1], n[2], n[3], n[0], n[1], n[2], n[3]});
   return {tissue, corners};
 }
 
-// The cells of a face as one key, whichever is first.
+// Key of the cells of a face, independent of their order.
 std::pair<int, int> cells_of(CellId cell, std::optional<CellId> beyond) {
   return std::minmax(cell.number(), beyond ? beyond->number() : -1);
 }
@@ -111,7 +112,7 @@ double Cortex::stiffening(CellId cell, const Step& step) const {
   return part * rule_.stiffness_program.at(start_s == ShapeActivation::not_yet ? 0 : step.end_time_s - start_s);
 }
 
-// A number of a cell times its strength; of a wall the mean of those of its two cells; the tissue's share of that.
+// Value of a face: value times strength of its cell, or the mean of both cells of a wall; times the share of the face.
 template <class OfCell>
 double Cortex::of_face(std::size_t f, const OfCell& of_cell) const {
   const auto strong = [&](CellId cell) {
@@ -134,7 +135,7 @@ Cortex::Response Cortex::active(std::size_t f, double area, const Step& step, bo
           gamma * area / (area + saturation), gamma * saturation / ((area + saturation) * (area + saturation))};
 }
 
-// With the rest area at the step's end, (A_b + r A)/(1 + r), where A_b is that before (docs/theory/cortex.md).
+// Response with the rest area at the end of the step, (A_b + r A)/(1 + r); A_b: previous one (docs/theory/cortex.md).
 Cortex::Response Cortex::elastic(std::size_t f, double area, const Step& step, double b, bool with_energy) const {
   const double before = rest_area_before(f, step), r = flows() ? step.rate_s / rule_.relaxation_s : 0;
   const double yielding = before + r * area;
@@ -170,8 +171,9 @@ EnergyFlow Cortex::energy_flow(const CompletedStep& made) const {
     if (rule_.tension != 0)
       flow.active = active(f, before[f], made.whole, true).energy - active(f, after[f], made.whole, true).energy;
     if (rule_.stiffness != 0) {
-      // Of unit programs, at the areas and rest areas of then. A program that rises puts in energy; what it lets go of
-      // is lost, as is what the tension does on the face beyond what it stores, where the rest area flows.
+      // Responses to unit programs, at areas and rest areas before and after. A rising program supplies energy; a
+      // falling one dissipates what it releases. Where the rest area relaxes, so does the work of the tension minus the
+      // increase in stored energy.
       const double b0 = stiffening_of(f, made.begin), b1 = stiffening_of(f, made.end), mean = 0.5 * (b0 + b1);
       const Response from = elastic(f, before[f], made.begin, 1, true), to = elastic(f, after[f], made.end, 1, true);
       const double programmed = (b1 - b0) * 0.5 * (from.energy + to.energy);
@@ -254,7 +256,7 @@ std::vector<double> Cortex::next_internal(const Step& step) const {
   return joined(std::move(internal), before.given.internal());
 }
 
-// A face comes from the one with its nodes, else from all between its cells. A face between daughters comes from none.
+// Origin of a face: the earlier face with the same nodes, else all between the same cells; none between daughters.
 class Cortex::Origins {
  public:
   Origins(const Cortex& before, const Division& division) : before_(before), division_(division) {

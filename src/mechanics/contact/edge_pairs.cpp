@@ -117,11 +117,11 @@ class Search {
     const ContactPair* last = last_of(pair);
     if (!turn(pair, last, b.outward - a.outward)) return std::nullopt;
     pair.first_gap = pair.gap(positions_);
-    // Beyond each other only where both touched, and then by no more than the distance more than is known.
+    // Penetration is admissible only where both were in contact, and then by one distance more than the last pair.
     const Memory memory_a = memories_.of(of_a), memory_b = memories_.of(of_b);
     const double last_gap = std::max(memory_a.least_gap, memory_b.least_gap);
     if (pair.first_gap < (last_gap < distance_ ? std::min(0.0, last_gap) - distance_ : 0)) return std::nullopt;
-    // One that slides in from a neighbouring segment pushes as that did.
+    // A pair that slides in from a neighbouring segment keeps the distance at which that one pushed.
     const double seen_at = last ? last->distance : std::min(memory_a.edge_distance, memory_b.edge_distance);
     pair.distance = std::min(distance_ / 2, std::max({seen_at, pair.first_gap, 0.0}));
     pair.area = EdgePairs::stiffening * (of_a.area + of_b.area) / 2;
@@ -186,13 +186,13 @@ ClosestPoint closest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, co
 }
 
 std::optional<PlacesOnSegments> nearest_inside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  // Rounding may not tell on which side of an end a place lies; an end is a point's business.
+  // Ends are left to pairs of points: rounding does not determine on which side of an end a place lies.
   constexpr double least_sine = 1e-3, least_part = 1e-9;
   const Vec3 u = b - a, v = d - c, w = c - a;
   const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), uw = u.dot(w), vw = v.dot(w);
   const double determinant = uu * vv - uv * uv;
   if (!(determinant > least_sine * least_sine * uu * vv)) return std::nullopt;
-  // Where the way between the lines a + s u and c + t v is across both.
+  // Parameters at which the connection between the lines a + s u and c + t v is perpendicular to both.
   const double s = (uw * vv - uv * vw) / determinant, t = (uw * uv - uu * vw) / determinant;
   const auto is_inside = [](double part) { return part > least_part && part < 1 - least_part; };
   if (!is_inside(s) || !is_inside(t)) return std::nullopt;

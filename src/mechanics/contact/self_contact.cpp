@@ -59,12 +59,12 @@ class NonconformingEdges {
   }
   /// Whether a facet lies beyond an edge that no other facet has in opposite direction.
   [[nodiscard]] bool is_inner(const Edge& edge) const { return inner_.contains(edge); }
-  /// The facets on whose edges a node lies that they do not have.
+  /// Facets on whose edges a node lies without being one of their nodes.
   [[nodiscard]] std::set<std::size_t> across(NodeId node) const {
     const auto found = across_.find(node);
     return found == across_.end() ? std::set<std::size_t>() : found->second;
   }
-  /// By edges, the smaller node first: the nodes of others that lie on them.
+  /// Nodes of other facets that lie on an edge, by edge with the smaller node first.
   [[nodiscard]] const std::map<Edge, std::set<NodeId>>& lying() const { return lying_; }
   [[nodiscard]] std::set<NodeId> lying_on(const Edge& edge) const {
     const auto found = lying_.find(std::minmax(edge.first, edge.second));
@@ -107,7 +107,7 @@ bool have_common_node(std::span<const KeptNode> some, std::span<const NodeId> ot
   return std::ranges::any_of(some, [&](NodeId node) { return std::ranges::find(others, node) != others.end(); });
 }
 
-// The pair whose q is now nearest to a place; nullptr of none.
+// Pair whose q is now nearest to a place; null without pairs.
 const Pair* nearest_of(std::span<const Pair> pairs, const Vec3& place, std::span<const Vec3> x) {
   const auto away = [&](const Pair& pair) { return (pair.q.at(x) - place).squaredNorm(); };
   const auto nearest = std::ranges::min_element(pairs, {}, away);
@@ -137,7 +137,7 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
   for (const auto& [edge, facet] : edges)
     if (!edges.contains({edge.second, edge.first}) && !nonconforming.is_inner(edge))
       rim_.push_back({edge.first, edge.second, facet});
-  // A node, or the mean of the nodes of an edge or a facet.
+  // Add a point: a node, or the mean of the nodes of an edge or a facet.
   const auto add_point = [&](const std::array<NodeId, 4>& nodes, int count, double area) {
     if (area == 0) return;
     SurfacePlace place(nodes, count);
@@ -230,14 +230,14 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> kn
     Vec3 outside = Vec3::Zero();
     for (int k = 0; k < 4; ++k) outside += q.weights[k] * normals[q.nodes[k].index()].normalized();
     if (outside.norm() < 0.1) continue;  // a sharp edge has no side
-    // Along the shortest way: then nothing comes nearer by sliding.
+    // Normal along the shortest connection, so that sliding reduces no gap.
     Pair found{static_cast<double>(p), Pair::no_segment, point, q, outside.normalized(), points_[p].area};
     const Vec3 apart = found.apart(x);
     if (std::ranges::all_of(of_corners, [](double weight) { return weight > 0; }))
       found.normal = triangles[t].area.normalized();
     else if (apart.norm() > 1e-3 * rule_.distance)
       found.normal = (apart.dot(outside) < 0 ? -apart : apart).normalized();
-    // Tips of two ridges may lean on each other though both look the same way; then each is the other's nearest place.
+    // Tips of two ridges that face the same way may touch; then each is the nearest place of the other.
     constexpr double rounded = -1e-9;  // of a cosine: what is square to each other on one side is so on its image
     if (found.normal.dot(facing) > rounded) continue;
     if ((first || outside.dot(facing) >= 0) && !is_nearest_about(q, place, surface)) continue;
@@ -246,7 +246,7 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> kn
     const double last_gap = last ? last->gap(x) : std::numeric_limits<double>::infinity();
     found.first_gap = found.gap(x);
     if (found.first_gap < (last_gap < rule_.distance ? std::min(0.0, last_gap) - rule_.distance : 0)) continue;
-    // One that comes into view nearer than the distance does not jump away.
+    // A pair detected below the contact distance starts without force, so nothing jumps apart.
     const double seen_at = last ? last->distance : -std::numeric_limits<double>::infinity();
     found.distance = std::min(rule_.distance, std::max(seen_at, found.first_gap));
     nearest2 = distance2;
@@ -279,7 +279,7 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<
     if (first->apart(surface.x).norm() < reach_of_second())
       if (const std::optional<Pair> second = pair_of(p, known_of_p, surface, &*first)) add(*second);
   }
-  // Edges are looked for only about what points see.
+  // Edges are searched only near the points of pairs.
   std::vector<char> is_searched(surface.x.size(), 0);
   for (const Pair& pair : pairs)
     for (const SurfacePlace* place : {&pair.p, &pair.q})
@@ -309,7 +309,7 @@ std::vector<double> SelfContact::packed(const std::vector<Pair>& pairs, std::spa
   return numbers;
 }
 
-// Calls take(pair, how far it is inside the distance) for every pair that is pressed.
+// Call take(pair, penetration of its contact distance) for every pair under pressure.
 template <class Take>
 void SelfContact::for_pressed(const Step& step, const Take& take) const {
   for (const Pair& pair : pairs_of(step.internal)) {
@@ -318,8 +318,7 @@ void SelfContact::for_pressed(const Step& step, const Take& take) const {
   }
 }
 
-// Calls take(pair, friction, velocity) for every pair that was pressed when the step began; the velocity is that of p
-// along q.
+// Call take(pair, friction, velocity of p along q) for every pair under pressure at the beginning of the step.
 template <class Take>
 void SelfContact::for_rubbing(const Step& step, const Take& take) const {
   if (rule_.friction == 0) return;
@@ -392,7 +391,7 @@ void SelfContact::add_tangent(const Step& step, TangentSink& tangent) const {
     const auto is_of_p = [&](int i) { return i < of_p; };
     const auto node = [&](int i) { return is_of_p(i) ? pair.p.nodes[i] : pair.q.nodes[i - of_p]; };
     const auto weight = [&](int i) { return is_of_p(i) ? pair.p.weights[i] : -pair.q.weights[i - of_p]; };
-    // One that has come from so far that its pattern leaves it out has what couples nodes of one side.
+    // A pair that moved here from outside its pattern contributes only the blocks that couple nodes of one side.
     const bool whole = may_touch(pair);
     for (int i = 0; i < of_both; ++i)
       for (int j = 0; j <= i; ++j)
@@ -438,7 +437,7 @@ void SelfContact::add_touching(std::span<const double> internal, NodeGroups& gro
   }
 }
 
-// As the side numbers them, each once.
+// Add the nodes as numbered on the solved side, each once.
 void SelfContact::add_group(std::span<const KeptNode> of_whole, NodeGroups& groups) const {
   std::vector<NodeId> nodes;
   for (const NodeId node : of_whole)

@@ -18,7 +18,7 @@ Mat3 spread(const HexPoints& rest) {
   return Q;
 }
 
-// The part that is no translation: eight vectors less their mean.
+// Part without translation: eight vectors minus their mean.
 Vec24 without_mean(const Vec24& vectors) {
   Vec3 mean = Vec3::Zero();
   for (int i = 0; i < 8; ++i) mean += vectors.segment<3>(3 * i) / 8;
@@ -108,7 +108,7 @@ const Mat24& ShapeMemory::local_stiffness(std::size_t element, const Vec24& u, M
     own[i] = (k + P / s) * Mat3::Identity() - (P / (s * s * s)) * (d * d.transpose());
     mean += own[i] / 8;
   }
-  // Rows and columns less their means.
+  // Subtract the means of rows and columns.
   for (int i = 0; i < 8; ++i)
     for (int j = 0; j < 8; ++j) {
       Mat3 block = (mean - own[i] - own[j]) / 8;

@@ -20,7 +20,7 @@ inline Slants slants(const Vec (&x)[4]) {
   return {{h * a0 + l * a1, l * a0 + h * a1}, {h * b0 + l * b1, l * b0 + h * b1}};
 }
 
-// The transpose: from what belongs to a and b to what belongs to the corners.
+// Transpose of slants: corner values from values of a and b.
 inline void to_corners(const Slants& g, Vec (&f)[4]) {
   constexpr double low = (1 - gauss) / 4, high = (1 + gauss) / 4;
   const Lanes l = broadcast(low), h = broadcast(high);

@@ -31,7 +31,8 @@ inline Place gauss_place(int g) {
   return {((g + 1) & 2) ? at : -at, (g & 2) ? at : -at, (g & 4) ? at : -at};
 }
 
-// dx/d(reference) there, by the modes of x; and the gradient by modes of what has the gradient H by that.
+// dx/d(reference) at a place, from the modes of x; and its transpose: gradient by modes from the gradient H by
+// dx/d(reference).
 inline Mat slope(const Place& at, const Vec (&m)[7]) {
   const auto [xi, eta, zeta] = at;
   const Lanes eighth = broadcast(0.125), x = broadcast(xi), y = broadcast(eta), z = broadcast(zeta);
@@ -71,8 +72,8 @@ inline Sym load_symmetric(const double* values, int lane) {
   return {at(0), at(1), at(2), at(3), at(4), at(5)};
 }
 
-// Cube roots of positive numbers, about 1 for the most part, by Halley's iteration: from above it comes down. Of others
-// there is none, so that no step ends there.
+// Cube roots of positive numbers, mostly near 1, by Halley's iteration, which descends from above. NaN for other
+// numbers, so that no step ends there.
 inline Lanes cube_root(Lanes q) {
   q = q > 0.0 ? q : broadcast(__builtin_nan(""));
   Lanes y = (1.0 / 3) * (q + 2.0);

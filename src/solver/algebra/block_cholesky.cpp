@@ -84,7 +84,7 @@ BlockCholesky::BlockCholesky(const BlockPattern& pattern, Kernels kernels)
   share_out();
 }
 
-// Not by how many threads there are: sums are taken in another order with other branches.
+// Independent of the number of threads: other branches would add in another order.
 void BlockCholesky::share_out() {
   std::vector<std::size_t> size(supernodes_.size());  // of each subtree
   std::vector<int> roots;
@@ -94,7 +94,7 @@ void BlockCholesky::share_out() {
     for (const int child : node.children) size[s] += size[child];
     if (node.rows.empty() && factor_size_ >= worth_sharing) roots.push_back(static_cast<int>(s));
   }
-  // The trunk has what is too large, or too small, for a thread of its own.
+  // The trunk contains the parts that are too large, or too small, for a thread of their own.
   const std::size_t largest = factor_size_ / 12, least = factor_size_ / 200;
   std::vector<char> is_trunk(supernodes_.size(), 1);
   while (!roots.empty()) {

@@ -125,7 +125,7 @@ class GuardedDirections final : public NewtonDirections {
     gave_up_at_s_ = -1;
   }
 
-  // The second's factor serves one step only.
+  // The factor of the direct method is used for one step only.
   [[nodiscard]] bool keeps_factor() const override { return first_->keeps_factor(); }
 
  private:

@@ -193,11 +193,11 @@ void VolumeProjection::set_weights(const State& before, double duration_s) {
   }
   weights_.assign(nodes, static_cast<double>(nodes) / (sum * duration_s));
   if (rule_.weights == ProjectionRule::Weights::equal) return;
-  // A node inside the body that nothing resists counts as the one that is resisted least.
+  // An inner node without resistance gets the smallest resistance of all nodes.
   for (std::size_t n = 0; n < nodes; ++n) weights_[n] = 1 / (std::max(resistance[n].x(), least) * duration_s);
 }
 
-// Moves the node of a contact inward, the way that its held directions leave, by a distance along the normal.
+// Move the node of a contact inward by a distance along the normal, within its free directions.
 void VolumeProjection::push(std::size_t k, double distance_um, Vectors& positions) {
   const std::size_t n = contacts_.node(k).index();
   Vec3 inward = contacts_.gap(k, positions).inward;
@@ -259,7 +259,7 @@ bool VolumeProjection::project(std::size_t k, Vectors& positions, StepReport& re
   return true;
 }
 
-// Goes as far as in the step before: next to rest that is nearly all of the way.
+// Start with the corrections of the previous step, which are nearly all of it close to equilibrium.
 void VolumeProjection::repeat_last_step(const State& before, double duration_s, State& after) {
   moved_.assign(volumes_.size(), 0.0);
   pushed_.assign(after.obstacle_forces.size(), 0.0);

@@ -10,7 +10,7 @@
 namespace plica {
 namespace {
 
-// The ways of a node's contacts, normalised, as columns.
+// Free normals of the contacts of a node, normalised, as columns.
 Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> normals_of(const NodeObstacles& touched) {
   Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3> normals(3, touched.count);
   for (int k = 0; k < touched.count; ++k) normals.col(k) = touched.free_normal[k].normalized();
@@ -99,15 +99,15 @@ class Balance {
         at.on_obstacle[k] = wanted[k] = 0;
         at.obstacle_forces[k] = 0;
       } else if (at.on_obstacle[k]) {
-        // Pulled inward for real: let go. Forces of rounding's size are none.
+        // Release nodes that are pulled inward by more than rounding.
         if (at.obstacle_forces[k] < -1e-12 * force_scale_) wanted[k] = 0;
         if (at.obstacle_forces[k] < 0) at.obstacle_forces[k] = 0;
       } else if (gap.value < -tolerances_.gap_um) {
         wanted[k] = 1;
       }
     });
-    // Changed all at once, contacts that pull at each other may come and go in turns for ever. Those that have changed
-    // often change one at a time, the first of them, which ends (Murty 1974), as long as forces are linear.
+    // Coupled contacts that change all at once may alternate without end. Those that have changed often change one at a
+    // time, lowest index first, which terminates for linear forces (Murty 1974).
     bool changed = false, any_waits = false;
     std::size_t first_waiting = 0;
     for (std::size_t k = 0; k < wanted.size(); ++k) {
@@ -279,7 +279,7 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
     }
     step.positions = at.positions;
   }
-  // Whether nothing wants to leave or join an obstacle, by the forces of this iterate.
+  // Whether the forces of this iterate change no contact.
   const auto settle_contacts = [&] {
     if (!balance_->revise_contacts(at, obstacle_changes)) return true;
     step.positions = at.positions;

@@ -78,7 +78,7 @@ std::vector<int> whole_numbers(vtkDataArray* array) {
   return numbers;
 }
 
-/// Whose cells have several hexahedra, the array cell_id tells, or the lists beside the grid.
+/// Cells of several hexahedra are given by the array cell_id, or by the lists beside the grid.
 void copy_groups(vtkUnstructuredGrid& grid, HexahedralMesh& mesh) {
   const auto list = [&](const char* name) { return whole_numbers(grid.GetFieldData()->GetArray(name)); };
   CellGroups groups{

@@ -105,7 +105,7 @@ std::size_t drop_unused(PolygonSurface& surface, std::size_t merged) {
   return dropped;
 }
 
-/// A face beyond an edge, and whether it runs along the edge in the same direction, as it should not.
+/// Face beyond an edge; `runs_alike` if both have the edge in the same direction, which is an error of orientation.
 struct FaceAcross {
   std::size_t face;
   bool runs_alike;
