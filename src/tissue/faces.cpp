@@ -101,7 +101,7 @@ std::vector<Face> all_lateral_faces(const Tissue& tissue) {
 
 constexpr double nothing_um = 1e-6;  // rounding
 
-// Cell rows from the midline: 0 if the midline cuts it, 1 if it runs along its side; else -1.
+// Cell rows between a cell and the midline: 0 if the midline cuts the cell, 1 if it is a side of it; else -1.
 int start_at_midline(const Tissue& tissue, const Cell& cell, bool has_back) {
   double low = std::numeric_limits<double>::infinity(), high = -low, height = 0;
   int on_it = 0;
