@@ -159,8 +159,8 @@ template <class Counts>
 Vectors forces_of_laws(const Model& model, const State& state, const Counts& counts) {
   Vectors forces(state.positions.size(), Vec3::Zero());
   const Vectors no_velocity = forces;
-  for_laws(model, motionless(state, no_velocity), [&](const Law& law, const Step& own) {
-    if (counts(law)) law.add_forces(own, forces);
+  for_laws(model, motionless(state, no_velocity), [&](const Law& law, const Step& law_step) {
+    if (counts(law)) law.add_forces(law_step, forces);
   });
   model.tissue.carry_hanging(forces);
   return forces;
@@ -182,10 +182,10 @@ Vectors driving_forces(const Model& model, const State& state) {
 
 std::vector<std::pair<std::string, double>> mean_tensions(const Model& model, const State& state) {
   std::vector<std::pair<std::string, double>> result;
-  for_laws(model, motionless(state, state.velocities), [&](const Law& law, const Step& own) {
+  for_laws(model, motionless(state, state.velocities), [&](const Law& law, const Step& law_step) {
     const auto* cortex = dynamic_cast<const Cortex*>(&law);
     if (cortex == nullptr || cortex->faces().empty()) return;
-    const std::vector<double> areas = cortex->areas(state.positions), tensions = cortex->tensions(own);
+    const std::vector<double> areas = cortex->areas(state.positions), tensions = cortex->tensions(law_step);
     double sum = 0, area = 0;
     for (std::size_t f = 0; f < areas.size(); ++f) sum += areas[f] * tensions[f], area += areas[f];
     result.emplace_back(law.label(), sum / area);

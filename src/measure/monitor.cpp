@@ -69,9 +69,9 @@ Vectors forces_of_cells(const Model& model, const State& state, const CellSet& c
   Vectors forces(state.positions.size(), Vec3::Zero());
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
     const std::vector<double> internal = model.laws[l]->internal_after_division(state.internals[l], part, kept);
-    Step own = now;
-    own.internal = internal;
-    model.laws[l]->after_division(part, kept, state.positions)->add_forces(own, forces);
+    Step law_step = now;
+    law_step.internal = internal;
+    model.laws[l]->after_division(part, kept, state.positions)->add_forces(law_step, forces);
   }
   const std::span<const double> pressures = state.pressures(model);
   CellVolumes(part).add_forces(state.positions,

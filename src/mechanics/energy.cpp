@@ -28,23 +28,23 @@ Step motionless(const State& state, std::span<const Vec3> velocities) {
   return step;
 }
 
-EnergyFlow viscous_energy_flow(const Law& law, const CompletedStep& made) {
-  const double now = law.energy(made.end);
-  return {.stored = now - law.energy(made.begin), .dissipated = 2 * (law.energy(made.whole) - now)};
+EnergyFlow viscous_energy_flow(const Law& law, const CompletedStep& completed) {
+  const double now = law.energy(completed.end);
+  return {.stored = now - law.energy(completed.begin), .dissipated = 2 * (law.energy(completed.motion) - now)};
 }
 
 std::vector<EnergyFlow> energy_flows(const Model& model, const State& before, const State& after) {
-  CompletedStep made{motionless(before, before.velocities), motionless(after, after.velocities), {}};
-  made.whole.positions = after.positions;
-  made.whole.previous_positions = before.positions;
-  made.whole.previous_velocities = before.velocities;
-  made.whole.rate_s = after.time_s - before.time_s;
-  made.whole.end_time_s = 0.5 * (before.time_s + after.time_s);
+  CompletedStep completed{motionless(before, before.velocities), motionless(after, after.velocities), {}};
+  completed.motion.positions = after.positions;
+  completed.motion.previous_positions = before.positions;
+  completed.motion.previous_velocities = before.velocities;
+  completed.motion.rate_s = after.time_s - before.time_s;
+  completed.motion.end_time_s = 0.5 * (before.time_s + after.time_s);
   std::vector<EnergyFlow> flows;
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
-    made.begin.internal = made.whole.internal = internal_of(before, l);
-    made.end.internal = internal_of(after, l);
-    flows.push_back(model.laws[l]->energy_flow(made));
+    completed.begin.internal = completed.motion.internal = internal_of(before, l);
+    completed.end.internal = internal_of(after, l);
+    flows.push_back(model.laws[l]->energy_flow(completed));
   }
   flows.emplace_back();
   if (model.volumes.is_held() && !model.growths.empty()) flows.back().active = work_of_pressures(model, before, after);

@@ -16,7 +16,7 @@ inline constexpr double no_time_s = 1e-9;
 Step motionless(const State& state, std::span<const Vec3> velocities);
 
 /// Return the flow of a law that resists rates linearly: twice its energy is dissipated.
-EnergyFlow viscous_energy_flow(const Law& law, const CompletedStep& made);
+EnergyFlow viscous_energy_flow(const Law& law, const CompletedStep& completed);
 
 /// Return the energy flows of the step from `before` to `after`: of each law in model order, then of cell volumes,
 /// which do work only when cells grow. The model must have the rest shapes of growing cells midway through the step.

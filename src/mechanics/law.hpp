@@ -54,7 +54,7 @@ struct Step {
 /// Completed step, for its energies (docs/theory/energy.md).
 struct CompletedStep {
   Step begin, end;  // motionless: positions and internal states before and after the step
-  Step whole;       // from one to the other at mean rates, with the internal states before; programs read midway
+  Step motion;      // from one to the other at mean rates, with the internal states before; programs read midway
 };
 
 /// Energy flows of a law over a step, nN um.
@@ -120,8 +120,8 @@ class Law {
 
   /// Return the energy flows of a step. The default is for laws that store all energy; active, dissipative or relaxing
   /// laws override it (docs/theory/energy.md).
-  [[nodiscard]] virtual EnergyFlow energy_flow(const CompletedStep& made) const {
-    return {.stored = energy(made.end) - energy(made.begin)};
+  [[nodiscard]] virtual EnergyFlow energy_flow(const CompletedStep& completed) const {
+    return {.stored = energy(completed.end) - energy(completed.begin)};
   }
 
   /// Add -d(energy)/dx.

@@ -80,7 +80,8 @@ std::size_t place_of_law(const Model& model, const std::string& label, bool acti
 
 std::vector<std::vector<double>> next_internals(const Model& model, const Step& step) {
   std::vector<std::vector<double>> internals;
-  for_laws(model, step, [&](const Law& law, const Step& own) { internals.push_back(law.next_internal(own)); });
+  for_laws(model, step,
+           [&](const Law& law, const Step& law_step) { internals.push_back(law.next_internal(law_step)); });
   return internals;
 }
 

@@ -85,10 +85,11 @@ inline const Model& at_end(const Model& model, const Step& step) { return step.g
 /// Call body(law at the end of the step, step as seen by that law) for every law.
 template <class Body>
 void for_laws(const Model& model, const Step& step, const Body& body) {
-  Step own = step;
+  Step law_step = step;
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
-    own.internal = l < step.internals.size() ? std::span<const double>(step.internals[l]) : std::span<const double>{};
-    body(*at_end(model, step).laws[l], own);
+    law_step.internal =
+        l < step.internals.size() ? std::span<const double>(step.internals[l]) : std::span<const double>{};
+    body(*at_end(model, step).laws[l], law_step);
   }
 }
 

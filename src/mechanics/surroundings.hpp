@@ -21,8 +21,8 @@ class NodeLaw : public Law {
     for_nodes(step, [&](std::size_t n, const auto& r) { sum += 0.5 * product(r, self().moved(step, n)); });
     return sum;
   }
-  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& made) const final {
-    return Self::dissipates ? viscous_energy_flow(*this, made) : Law::energy_flow(made);
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const final {
+    return Self::dissipates ? viscous_energy_flow(*this, completed) : Law::energy_flow(completed);
   }
   void add_forces(const Step& step, std::span<Vec3> forces) const final {
     for_nodes(step, [&](std::size_t n, const auto& r) { forces[n] -= r * self().moved(step, n); });
@@ -130,11 +130,11 @@ class FacePressure final : public Law {
     for (std::size_t n = 0; n < loads_.size(); ++n) work += loads_[n].dot(step.positions[n]);
     return -program_.at(step.end_time_s) * work;
   }
-  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& made) const override {
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override {
     double work = 0;
     for (std::size_t n = 0; n < loads_.size(); ++n)
-      work += loads_[n].dot(made.whole.positions[n] - made.whole.previous_positions[n]);
-    return {.active = program_.at(made.whole.end_time_s) * work};
+      work += loads_[n].dot(completed.motion.positions[n] - completed.motion.previous_positions[n]);
+    return {.active = program_.at(completed.motion.end_time_s) * work};
   }
   void add_forces(const Step& step, std::span<Vec3> forces) const override {
     const double activity = program_.at(step.end_time_s);

@@ -194,8 +194,8 @@ double Contraction::energy(const Step& step) const {
   return sum;
 }
 
-EnergyFlow Contraction::energy_flow(const CompletedStep& made) const {
-  const Step& step = made.whole;
+EnergyFlow Contraction::energy_flow(const CompletedStep& completed) const {
+  const Step& step = completed.motion;
   EnergyFlow flow;
   for (std::size_t k = 0; k < springs_.size(); ++k) {
     const Spring& spring = springs_[k];

@@ -56,7 +56,7 @@ class Contraction final : public Law {
   [[nodiscard]] std::string_view name() const override { return "contraction"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Contraction>(*this); }
   [[nodiscard]] double energy(const Step& step) const override;
-  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& made) const override;
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
   void add_forces(const Step& step, std::span<Vec3> forces) const override;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;

@@ -163,19 +163,21 @@ Cortex::Response Cortex::respond(std::size_t f, double area, const Step& step, b
   return sum;
 }
 
-EnergyFlow Cortex::energy_flow(const CompletedStep& made) const {
-  const std::vector<double> before = areas(made.begin.positions), after = areas(made.end.positions);
+EnergyFlow Cortex::energy_flow(const CompletedStep& completed) const {
+  const std::vector<double> before = areas(completed.begin.positions), after = areas(completed.end.positions);
   std::vector<EnergyFlow> flows_of(faces_.size());
   chunks_.for_elements([&](std::size_t f) {
     EnergyFlow& flow = flows_of[f];
     if (rule_.tension != 0)
-      flow.active = active(f, before[f], made.whole, true).energy - active(f, after[f], made.whole, true).energy;
+      flow.active =
+          active(f, before[f], completed.motion, true).energy - active(f, after[f], completed.motion, true).energy;
     if (rule_.stiffness != 0) {
       // Responses to unit programs, at areas and rest areas before and after. A rising program supplies energy; a
       // falling one dissipates what it releases. Where the rest area relaxes, so does the work of the tension minus the
       // increase in stored energy.
-      const double b0 = stiffening_of(f, made.begin), b1 = stiffening_of(f, made.end), mean = 0.5 * (b0 + b1);
-      const Response from = elastic(f, before[f], made.begin, 1, true), to = elastic(f, after[f], made.end, 1, true);
+      const double b0 = stiffening_of(f, completed.begin), b1 = stiffening_of(f, completed.end), mean = 0.5 * (b0 + b1);
+      const Response from = elastic(f, before[f], completed.begin, 1, true),
+                     to = elastic(f, after[f], completed.end, 1, true);
       const double programmed = (b1 - b0) * 0.5 * (from.energy + to.energy);
       flow.stored = b1 * to.energy - b0 * from.energy;
       flow.active += std::max(0.0, programmed);

@@ -39,7 +39,7 @@ class Cortex final : public BatchLaw<Cortex, 4> {
 
   [[nodiscard]] std::string_view name() const override { return "cortex"; }
   [[nodiscard]] double energy(const Step& step) const override;
-  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& made) const override;
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
 
   /// Return, if areas relax, stress-free / reference areas at the beginning of this step and of the previous one; then
   /// cell states, if used; then overridden activities, if any.

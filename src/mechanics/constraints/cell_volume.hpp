@@ -8,7 +8,7 @@
 
 #include "core/uninitialised.hpp"
 #include "mechanics/constraint.hpp"
-#include "mechanics/elasticity/of_elements.hpp"
+#include "mechanics/elasticity/element_values.hpp"
 #include "mechanics/kernels/batch_law.hpp"
 #include "tissue/tissue.hpp"
 
@@ -107,7 +107,7 @@ class Dilatation final : public BatchLaw<Dilatation, 8> {
   void take_target_volumes(const Tissue& tissue);
   [[nodiscard]] VolumeArrays kernel_arrays(const Step& step) const;
 
-  OfElements<double> bulk_moduli_;  // kPa
+  ElementValues<double> bulk_moduli_;  // kPa
   bool cells_are_exact_;
   std::vector<VolumeBatch> batches_;  // empty while inactive, as are the elements
 };

@@ -352,16 +352,16 @@ void SelfContact::add_push(const Pair& pair, const Vec3& push, std::span<Vec3> f
   add(pair.q, -1);
 }
 
-EnergyFlow SelfContact::energy_flow(const CompletedStep& made) const {
+EnergyFlow SelfContact::energy_flow(const CompletedStep& completed) const {
   // Pairs are detected again at the end of the step; energy stored by old pairs beyond the new ones is dissipated.
-  Step with_old_pairs = made.end;
-  with_old_pairs.internal = made.begin.internal;
-  const double now = energy(made.end);
+  Step with_old_pairs = completed.end;
+  with_old_pairs.internal = completed.begin.internal;
+  const double now = energy(completed.end);
   double rubbed = 0;
-  for_rubbing(made.whole, [&](const Pair&, const Coulomb& friction, const Vec3& velocity) {
-    rubbed -= made.whole.rate_s * friction.force(velocity).dot(velocity);
+  for_rubbing(completed.motion, [&](const Pair&, const Coulomb& friction, const Vec3& velocity) {
+    rubbed -= completed.motion.rate_s * friction.force(velocity).dot(velocity);
   });
-  return {.stored = now - energy(made.begin), .dissipated = energy(with_old_pairs) - now + rubbed};
+  return {.stored = now - energy(completed.begin), .dissipated = energy(with_old_pairs) - now + rubbed};
 }
 
 void SelfContact::add_forces(const Step& step, std::span<Vec3> forces) const {

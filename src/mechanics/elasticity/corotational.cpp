@@ -84,8 +84,8 @@ CorotationalArrays Corotational::kernel_arrays(const Step& step) const {
           .semidefinite_tangent = step.semidefinite_tangent};
 }
 
-EnergyFlow Corotational::energy_flow(const CompletedStep& made) const {
-  return viscous_batches_.empty() ? Law::energy_flow(made) : viscous_energy_flow(*this, made);
+EnergyFlow Corotational::energy_flow(const CompletedStep& completed) const {
+  return viscous_batches_.empty() ? Law::energy_flow(completed) : viscous_energy_flow(*this, completed);
 }
 
 double Corotational::energy(const Step& step) const {

@@ -10,8 +10,8 @@
 // derivative of R: R K R^T, the warped stiffness.
 #pragma once
 
+#include "mechanics/elasticity/element_values.hpp"
 #include "mechanics/elasticity/hexahedron_stiffness.hpp"
-#include "mechanics/elasticity/of_elements.hpp"
 #include "mechanics/kernels/batch_law.hpp"
 #include "tissue/tissue.hpp"
 
@@ -30,7 +30,7 @@ class Corotational final : public BatchLaw<Corotational, 8> {
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
   [[nodiscard]] double energy(const Step& step) const override;
-  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& made) const override;
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> positions) const override;
 
@@ -45,7 +45,7 @@ class Corotational final : public BatchLaw<Corotational, 8> {
                                         &avx512::corotational_kernels};
   void fit(const Tissue& tissue, std::size_t element);  // computes element data from the rest shape
 
-  OfElements<ElasticModuli> moduli_;
+  ElementValues<ElasticModuli> moduli_;
   double shear_viscosity_;
   std::vector<CorotationalBatch> batches_;     // eight elements each
   std::vector<ViscousBatch> viscous_batches_;  // viscous counterpart

@@ -152,14 +152,14 @@ double NeoHookean::energy(const Step& step) const {
 }
 
 // Work not stored in the relaxed rest shapes is dissipated.
-EnergyFlow NeoHookean::energy_flow(const CompletedStep& made) const {
-  EnergyFlow flow = Law::energy_flow(made);
+EnergyFlow NeoHookean::energy_flow(const CompletedStep& completed) const {
+  EnergyFlow flow = Law::energy_flow(completed);
   if (!flows_) return flow;
-  Vectors mean(made.end.positions.size(), Vec3::Zero());
-  add_forces(made.begin, mean);
-  add_forces(made.end, mean);
+  Vectors mean(completed.end.positions.size(), Vec3::Zero());
+  add_forces(completed.begin, mean);
+  add_forces(completed.end, mean);
   for (std::size_t n = 0; n < mean.size(); ++n)
-    flow.dissipated -= 0.5 * mean[n].dot(made.end.positions[n] - made.begin.positions[n]);
+    flow.dissipated -= 0.5 * mean[n].dot(completed.end.positions[n] - completed.begin.positions[n]);
   flow.dissipated -= flow.stored;
   return flow;
 }

@@ -7,7 +7,7 @@
 // The bulk modulus of this energy is 2 mu/3; the rest of volume elasticity belongs to cell_volume.
 #pragma once
 
-#include "mechanics/elasticity/of_elements.hpp"
+#include "mechanics/elasticity/element_values.hpp"
 #include "mechanics/kernels/batch_law.hpp"
 #include "tissue/tissue.hpp"
 
@@ -32,7 +32,7 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8> {
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
   [[nodiscard]] double energy(const Step& step) const override;
-  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& made) const override;
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
 
   /// Return, if cells relax, C_p at the beginning of this step, then of the previous step, in the layout of kernels.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
@@ -61,7 +61,7 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8> {
   [[nodiscard]] Mat3 flowed_before(std::size_t element, int gauss_point, const Step& step) const;
   [[nodiscard]] NeoHookeanArrays kernel_arrays(const Step& step) const;
 
-  OfElements<NeoHookeanMaterial> materials_;
+  ElementValues<NeoHookeanMaterial> materials_;
   bool flows_;  // whether any element relaxes
   std::vector<CellId> element_cell_;
   std::vector<HexPoints> rest_;  // elements; um

@@ -121,8 +121,8 @@ double TurningElements::energy(const Step& step) const {
   return chunks_.sum_over_elements([&](std::size_t e) { return frame(e, step).energy; });
 }
 
-EnergyFlow TurningElements::energy_flow(const CompletedStep& made) const {
-  return viscous_ ? viscous_energy_flow(*this, made) : Law::energy_flow(made);
+EnergyFlow TurningElements::energy_flow(const CompletedStep& completed) const {
+  return viscous_ ? viscous_energy_flow(*this, completed) : Law::energy_flow(completed);
 }
 
 void TurningElements::add_forces(const Step& step, std::span<Vec3> forces) const {

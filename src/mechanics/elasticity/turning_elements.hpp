@@ -25,7 +25,7 @@ void require_upright_rest_shapes(const Tissue& tissue);
 class TurningElements : public Law {
  public:
   [[nodiscard]] double energy(const Step& step) const final;
-  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& made) const final;
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const final;
   void add_forces(const Step& step, std::span<Vec3> forces) const final;
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const final;
   void add_tangent(const Step& step, TangentSink& tangent) const final;

@@ -30,9 +30,9 @@ std::vector<Value> in_all_elements(const Tissue& tissue, const Value& value, con
 
 /// Values per element, inherited with their cells.
 template <class Value>
-class OfElements {
+class ElementValues {
  public:
-  OfElements(const Tissue& tissue, std::vector<Value> values) : values_(std::move(values)) {
+  ElementValues(const Tissue& tissue, std::vector<Value> values) : values_(std::move(values)) {
     for (const Cell& cell : tissue.cells) cells_.emplace_back(cell.first_element.index(), cell.element_count);
   }
 
