@@ -25,7 +25,7 @@ NodeMean mean_by(const Weights& weights) {
   return on;
 }
 
-// Adds weight times the point of a wall at `at`: a stop, or between two.
+// Add weight times the point of a wall at `at`: a stop, or interpolated between two.
 void add_wall_point(const std::vector<WallStop>& wall, double at, bool apical, double weight, Weights& sum) {
   const auto after = std::ranges::find_if(wall, [&](const WallStop& stop) { return stop.at >= at; });
   const auto add = [&](const WallStop& stop, double part) { sum[apical ? stop.apical : stop.basal] += part; };
@@ -36,8 +36,8 @@ void add_wall_point(const std::vector<WallStop>& wall, double at, bool apical, d
   add(*after, weight * part);
 }
 
-// One of a cell's quadrilaterals, u from its first corner to the second, v to the last. Its sides are stretches of
-// walls, bent where those have stops, or straight between two places.
+// Quadrilateral of a cell: u from its first corner to the second, v from the first to the last. Sides are parts of
+// walls, bent at stops, or straight between two places.
 class Patch {
  public:
   Patch(const Cell& cell, const OutlineQuad& corners)
@@ -45,7 +45,7 @@ class Patch {
         sides_{side(corners[0], corners[1]), side(corners[1], corners[2]), side(corners[3], corners[2]),
                side(corners[0], corners[3])} {}
 
-  // The lines at places along u (0) or v (1): 0, stops on the two sides along it, 1.
+  // Coordinates u (0) or v (1) of element lines: 0, stops on the two sides along it, 1.
   [[nodiscard]] std::vector<double> lines(int along) const {
     std::set<double> places = {0, 1};
     for (const Side& side : {sides_[along], sides_[along + 2]}) {
@@ -57,9 +57,9 @@ class Patch {
     return {places.begin(), places.end()};
   }
 
-  // A point of the apical or basal face: on the bilinearly blended (Coons) patch between the four sides. On a side it
-  // is the side; where all are straight it is bilinear; between lines through the stops it is bilinear, too, so the
-  // elements are this face exactly. Places are dyadic, so that weights that cancel do so exactly.
+  // Point of the apical or basal face: on the bilinearly blended (Coons) patch of the four sides. It coincides with the
+  // sides and is bilinear between lines through the stops, so elements represent the face exactly. Coordinates are
+  // dyadic, so weights that cancel do so exactly.
   [[nodiscard]] NodeMean point(double u, double v, bool apical) const {
     Weights sum;
     const auto add = [&](int side, double at, double weight) { add_side_point(sides_[side], at, apical, weight, sum); };
@@ -141,9 +141,9 @@ struct Rings {
   std::vector<Item> low, high;
 };
 
-// From what goes round their mother, and what is new: the low daughter's three from the first cut wall on, the high
-// one's first and last two. Corner 0 is the low one's. What is kept first keeps its number: a grid's cells keep their
-// directions.
+// Rings of the daughters from the ring of the mother and three new items each: those of the low daughter follow from
+// the first cut wall on; the high daughter takes the first and the last two. Corner 0 belongs to the low one.
+// Rotated so that the first kept item keeps its number; so cells of a grid keep their directions.
 template <class Item>
 Rings<Item> cut_ring(const CellCut& cut, std::span<const Item> ring, const std::array<Item, 3>& low,
                      const std::array<Item, 3>& high) {
@@ -245,8 +245,8 @@ class Cutter {
     return node;
   }
 
-  // The new wall, from the middle of the first wall to that of the second. Where it crosses lines along which the
-  // mother's faces bend it has a stop, so that it lies on them and no volume is won or lost.
+  // New wall, from the middle of the first wall to that of the second. It has stops where it crosses lines at which the
+  // mother's faces bend, so it lies on them and the volume is unchanged.
   std::vector<WallStop> wall_through(const CellCut& cut, const std::vector<double>& lines) {
     const WallStop from = middle_stop(cut.cell, cut.first_wall), to = middle_stop(cut.cell, cut.second_wall);
     const bool along_v = cut.first_wall == 0;  // from wall 0 to wall 2; else from wall 1 to wall 3, against u
@@ -267,8 +267,8 @@ class Cutter {
     return wall;
   }
 
-  // The stop in the middle of a wall; put there, for all whose wall it is, unless a neighbour's cut did so before.
-  // Stops come from halving, so one that is missing lies midway between two.
+  // Stop in the middle of a wall; inserted for both cells of the wall unless an earlier cut of a neighbour did so.
+  // Stops come from halving, so a missing one lies midway between two.
   WallStop middle_stop(CellId cell, int wall) {
     const auto& chain = tissue_.cells[cell.index()].walls[wall];
     const auto after = std::ranges::find_if(chain, [](const WallStop& stop) { return stop.at >= middle; });

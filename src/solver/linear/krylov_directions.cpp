@@ -17,11 +17,11 @@ namespace {
 
 constexpr std::size_t most_obstacle_changes = 32;  // before the factor is recomputed
 
-// gamma times the size of a cell, over the mean stiffness of a node. Large, so that few iterations are left for the
-// multipliers; but single precision has to carry A beside it, multigrid finds nearly incompressible cells hard (and has
-// ChequerboardFactor for the pressures: twice or half of gamma changes little), and within cells of several elements it
-// resists what the exact volumes allow. With a factor, a third takes a fifth more iterations, three times as much no
-// fewer.
+// gamma times the size of a cell, relative to the mean stiffness of a node. A large value saves iterations for the
+// multipliers. Its limits: single precision must resolve A beside it; multigrid converges slowly on nearly
+// incompressible cells (and has ChequerboardFactor for pressures, so a factor of 2 changes little); within cells of
+// several elements it resists motions that exact volumes allow. With a factor, a third of it costs a fifth more
+// iterations; three times as much saves none.
 double regularisation(LinearMethod method, int parts) {
   if (parts > 1) return 3;
   return method == LinearMethod::multigrid ? 5 : 150;
@@ -80,8 +80,8 @@ class KeptPreconditioner {
   /// Add changes of contacts since. False if it must be recomputed.
   [[nodiscard]] bool follow_contacts(const Iterate& at) {
     if (factor_ != nullptr) return contacts_.follow(at, *factor_);
-    // A solve for each that has changed is too much. The multigrid has the node's own stiffness along directions that
-    // were fixed, which is a preconditioner as long as they are few.
+    // One solve per changed contact would be too expensive. Multigrid uses the own stiffness of a node along formerly
+    // fixed directions, which preconditions well while they are few.
     std::size_t changed = 0;
     for (std::size_t k = 0; k < at.on_obstacle.size(); ++k) changed += at.on_obstacle[k] != on_obstacle_[k];
     return changed <= system_.frames().size() / 100;
@@ -206,9 +206,9 @@ double useful_tolerance(const Residual& residual, const NewtonDirections::Forcin
   return std::clamp(forcing.relative_tolerance, useful, 0.1);
 }
 
-/// Accuracy of the full system that gives its forces `accuracy`. In a short step, where drag makes the system stiff,
-/// what constraints lack weighs thousands of times what is unbalanced. (Up to a thousand times, as their weights have
-/// it, forces come out well enough.)
+/// Return the accuracy of the full system that gives its forces `accuracy`. In a short step drag makes the system
+/// stiff, and errors of constraints weigh thousands of times those of forces. (Up to a factor of a thousand, their
+/// weights leave forces accurate enough.)
 double accuracy_of_whole(double accuracy, const KrylovVector& right, std::size_t nodes) {
   const std::span<const double> all(right), forces = all.first(3 * nodes);
   const double share = std::sqrt(parallel_dot(forces, forces) / parallel_dot(all, all));
@@ -244,8 +244,8 @@ class KrylovDirections final : public NewtonDirections {
     else
       kept_->border_dense_rows();
 
-    // Where energy curves down along some direction, that leads to a saddle, if anywhere, and iterations do not end:
-    // far from balance the semidefinite tangent shows the way. Near it Newton's method needs all of the tangent.
+    // With a direction of negative curvature, iterations lead to a saddle or do not end. Far from balance the
+    // semidefinite tangent is used instead; close to it Newton's method needs the exact tangent.
     Step here = step;
     bool is_indefinite = false;
     const auto multiply = [&](const KrylovVector& p, KrylovVector& q) {

@@ -85,7 +85,8 @@ class LinearisedSystem {
     const std::span<const Vec3> dx = of_nodes(direction);
     const std::span<Vec3> forces = of_nodes(product);
     parallel_for(forces.size(), [&](std::size_t n) { forces[n].setZero(); });
-    for_laws(model_, step, [&](const Law& law, const Step& own) { law.add_tangent_product(own, dx, forces); });
+    for_laws(model_, step,
+             [&](const Law& law, const Step& law_step) { law.add_tangent_product(law_step, dx, forces); });
     if (!step.semidefinite_tangent)
       for_held_constraints(model_, [&](const Constraint& constraint, std::size_t first, std::size_t) {
         constraint.add_tangent_product(at.positions, std::span(at.multipliers).subspan(first, constraint.count()), dx,

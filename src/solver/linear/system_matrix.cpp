@@ -17,7 +17,7 @@ SparsePattern joined_nodes(const Model& model, const Step& step) {
   const auto take = [&](NodeGroups groups) {
     if (std::ranges::find(lists, groups) == lists.end()) lists.push_back(std::move(groups));
   };
-  for_laws(model, step, [&](const Law& law, const Step& own) { take(law.node_groups(own.internal)); });
+  for_laws(model, step, [&](const Law& law, const Step& law_step) { take(law.node_groups(law_step.internal)); });
   for_held_constraints(model,
                        [&](const Constraint& constraint, std::size_t, std::size_t) { take(constraint.parts().nodes); });
   SparsePattern joined;
@@ -49,7 +49,7 @@ BlockPattern pattern_of(const Model& model, const Step& step) {
 std::vector<int> pattern_revisions(const Model& model, const Step& step) {
   std::vector<int> revisions;
   for_laws(model, step,
-           [&](const Law& law, const Step& own) { revisions.push_back(law.pattern_revision(own.internal)); });
+           [&](const Law& law, const Step& law_step) { revisions.push_back(law.pattern_revision(law_step.internal)); });
   return revisions;
 }
 
@@ -120,8 +120,8 @@ void SystemMatrix::assemble(const Model& model, const ObstacleContacts& contacts
       throw std::logic_error(fmt::format(
           "\"{}\" adds to the tangent a block of nodes that its pattern does not join (node_groups, parts)", name));
   };
-  for_laws(model, step, [&](const Law& law, const Step& own) {
-    law.add_tangent(own, *this);
+  for_laws(model, step, [&](const Law& law, const Step& law_step) {
+    law.add_tangent(law_step, *this);
     refuse_outside(law.name());
   });
   for_held_constraints(model, [&](const Constraint& constraint, std::size_t first, std::size_t) {
@@ -166,7 +166,7 @@ void SystemMatrix::multiply(std::size_t node, const Vec3& direction, std::span<V
 namespace {
 
 // The diagonal of a fixed unknown: any number will do; one of the block's own size suits the factor's scaling.
-double pivot(double own) { return own != 0 ? own : 1; }
+double pivot(double diagonal) { return diagonal != 0 ? diagonal : 1; }
 
 }  // namespace
 

@@ -42,11 +42,11 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
   step.grown = grown;
   StepReport report;
   KrylovVector forces(3 * nodes, 0.0);
-  for_laws(model_, step, [&](const Law& law, const Step& own) { law.add_forces(own, as_vectors(forces)); });
+  for_laws(model_, step, [&](const Law& law, const Step& law_step) { law.add_forces(law_step, as_vectors(forces)); });
   keep_held(as_vectors(forces));
 
   DiagonalBlocks diagonal(nodes);
-  for_laws(model_, step, [&](const Law& law, const Step& own) { law.add_tangent(own, diagonal); });
+  for_laws(model_, step, [&](const Law& law, const Step& law_step) { law.add_tangent(law_step, diagonal); });
   for (std::size_t n = 0; n < nodes; ++n) {
     Mat3& block = diagonal.blocks[n];
     for (int axis = 0; axis < 3; ++axis)
@@ -60,8 +60,8 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
 
   const auto multiply = [&](const KrylovVector& direction, KrylovVector& product) {
     std::ranges::fill(product, 0.0);
-    for_laws(model_, step, [&](const Law& law, const Step& own) {
-      law.add_tangent_product(own, as_vectors(direction), as_vectors(product));
+    for_laws(model_, step, [&](const Law& law, const Step& law_step) {
+      law.add_tangent_product(law_step, as_vectors(direction), as_vectors(product));
     });
     keep_held(as_vectors(product));
   };

@@ -183,8 +183,8 @@ void VolumeProjection::set_weights(const State& before, double duration_s) {
   Step step{at, at, still, duration_s, 0};
   step.internals = before.internals;
   Vectors resistance(nodes, Vec3::Zero());
-  for_laws(model_, step, [&](const Law& law, const Step& own) {
-    if (law.node_groups(own.internal).empty()) law.add_tangent_product(own, along_x, resistance);
+  for_laws(model_, step, [&](const Law& law, const Step& law_step) {
+    if (law.node_groups(law_step.internal).empty()) law.add_tangent_product(law_step, along_x, resistance);
   });
   double sum = 0, least = 0;
   for (const Vec3& r : resistance) {
@@ -208,9 +208,9 @@ void VolumeProjection::push(std::size_t k, double distance_um, Vectors& position
   pushed_[k] += distance_um;
 }
 
-// Puts nodes beyond an obstacle back onto it. A node that was pushed and now has a gap goes back to it, at most
-// as far as it was pushed: so the end is the nearest place that obeys obstacles and volumes, on whatever way it is
-// reached.
+// Move nodes beyond an obstacle back onto it. A node that was pushed and now has a gap moves back towards it, at most
+// as far as it was pushed; so the result is the nearest place that satisfies obstacles and volumes, independent of the
+// path.
 bool VolumeProjection::project_obstacles(Vectors& positions) {
   bool moved = false;
   for (std::size_t k = 0; k < pushed_.size(); ++k) {

@@ -49,10 +49,10 @@ class Balance {
         of_one[n].setZero();
       });
     };
-    for_laws(model_, step, [&](const Law& law, const Step& own) {
-      law.add_forces(own, of_one);
+    for_laws(model_, step, [&](const Law& law, const Step& law_step) {
+      law.add_forces(law_step, of_one);
       take();
-      rounding += law.rounding(own, position_rounding_);
+      rounding += law.rounding(law_step, position_rounding_);
     });
     r.deficits.assign(at.multipliers.size(), 0.0);
     const Model& model = at_end(model_, step);
@@ -187,16 +187,17 @@ NewtonStepper::~NewtonStepper() = default;
 
 void NewtonStepper::forget_factor() { directions_->forget_factor(); }
 
-// Goes along the direction as far as laws allow, elements stay upright and the residual falls; if it falls nowhere,
-// where it is least. False, with the reason in the report, when no length keeps every element upright and every force
-// finite.
+// Line search: shorten the direction until laws allow it, no element inverts and the residual falls; if it never falls,
+// take the length of the smallest residual. False, with the reason in the report, if every length inverts an element or
+// gives a force that is not finite.
 bool NewtonStepper::search_line(const Step& step, const Direction& d, Iterate& at, Residual& now,
                                 StepReport& report) const {
   std::optional<CellId> blocking;
   std::optional<std::pair<Iterate, Residual>> best;
   double part = 1;
-  for_laws(model_, step,
-           [&](const Law& law, const Step& own) { part = std::min(part, law.max_fraction(own, d.positions)); });
+  for_laws(model_, step, [&](const Law& law, const Step& law_step) {
+    part = std::min(part, law.max_fraction(law_step, d.positions));
+  });
   for (int halving = 0; halving < 8; ++halving, part *= 0.5) {
     Iterate trial = at;
     parallel_for(trial.positions.size(), [&](std::size_t n) { trial.positions[n] += part * d.positions[n]; });
