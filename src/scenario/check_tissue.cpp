@@ -105,7 +105,7 @@ class SymmetryCheck {
       if (const auto cell = first_cell(differ))
         return refuse(acting.table,
                       fmt::format(fmt::runtime(what), numbers[cell->index()], cell->number(),
-                                  numbers[mirror_.own(*cell).index()], mirror_.own(*cell).number()),
+                                  numbers[mirror_.original(*cell).index()], mirror_.original(*cell).number()),
                       "make variation, delay, pulse and profile symmetric, or remove embryo.mirror");
     }
   }
@@ -114,11 +114,11 @@ class SymmetryCheck {
     const CellSet& cells = whole_.regions.at(region);
     const auto cell = first_cell([&](std::size_t a, std::size_t b) { return cells[a] != cells[b]; });
     if (!cell) return true;
-    const CellId own = mirror_.own(*cell);
-    const bool has_own = cells[own.index()];
+    const CellId original = mirror_.original(*cell);
+    const bool has_original = cells[original.index()];
     refuse(table + ".region",
            fmt::format("region \"{}\" is not symmetric: it contains cell {} but not its mirror image, cell {}", region,
-                       (has_own ? own : *cell).number(), (has_own ? *cell : own).number()),
+                       (has_original ? original : *cell).number(), (has_original ? *cell : original).number()),
            "use a symmetric region, or remove embryo.mirror");
     return false;
   }
@@ -148,7 +148,7 @@ class SymmetryCheck {
   template <class Differ>
   [[nodiscard]] std::optional<CellId> first_cell(const Differ& differ) const {
     for (std::size_t c = 0; c < whole_.cells.size(); ++c)
-      if (differ(c, mirror_.own(CellId(c)).index())) return CellId(c);
+      if (differ(c, mirror_.original(CellId(c)).index())) return CellId(c);
     return std::nullopt;
   }
   void refuse(const std::string& key, std::string problem, std::string remedy) {

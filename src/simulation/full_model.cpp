@@ -15,7 +15,9 @@ FullModel::FullModel(Model model, Mirror mirror)
 
 // State without the internal variables of laws.
 State FullModel::whole_of(const Model& side, const State& state) const {
-  const auto vectors = [&](const Vectors& of_side) { return of_side.empty() ? Vectors() : mirror_.whole(of_side); };
+  const auto vectors = [&](const Vectors& of_side) {
+    return of_side.empty() ? Vectors() : mirror_.full_vectors(of_side);
+  };
   const auto multipliers = [&](const std::vector<double>& of_side) {
     std::vector<double> all;
     if (of_side.empty()) return all;
@@ -42,7 +44,7 @@ State FullModel::whole_of(const Model& side, const State& state) const {
       const NodeId node = mirror_.image(of_whole).node;
       const auto contact = first + static_cast<std::size_t>(std::ranges::lower_bound(nodes, node) - nodes.begin());
       // Contact forces at nodes on a mirror plane are divided by the share of the side.
-      whole.obstacle_forces.push_back(state.obstacle_forces[contact] / side.tissue.own_share({&node, 1}));
+      whole.obstacle_forces.push_back(state.obstacle_forces[contact] / side.tissue.side_share({&node, 1}));
       whole.on_obstacle.push_back(state.on_obstacle[contact]);
     }
     first += nodes.size();
@@ -72,11 +74,11 @@ void FullModel::go_to(const Model& side, const State& state, std::vector<std::ve
 
 std::vector<double> FullModel::take_activities(std::size_t law, const std::vector<double>& activities) {
   for (std::size_t c = 0; c < activities.size(); ++c)
-    if (const CellId own = mirror_.own(CellId(c)); activities[c] != activities[own.index()])
+    if (const CellId original = mirror_.original(CellId(c)); activities[c] != activities[original.index()])
       throw UsageError(
           fmt::format("{}: cells {} and {} are mirror images, and their activities are {} and {}; give "
                       "both the same value, or remove embryo.mirror",
-                      model_.laws[law]->label(), c, own.index(), activities[c], activities[own.index()]));
+                      model_.laws[law]->label(), c, original.index(), activities[c], activities[original.index()]));
   std::vector<double> of_side;
   for (const CellId cell : mirror_.origins)
     if (!activities.empty()) of_side.push_back(activities[cell.index()]);

@@ -12,7 +12,7 @@ namespace {
 
 // Half of a face on a mirror plane, or at an end of a slice, belongs to the other side.
 double share_of(const Tissue& tissue, const Face& face) {
-  const double share = tissue.own_share(face.nodes);
+  const double share = tissue.side_share(face.nodes);
   if (!tissue.is_endless || face.beyond || share < 1) return share;
   const auto x = [&](NodeId node) { return tissue.rest_positions[node.index()].x(); };
   const double first = x(face.nodes[0]);

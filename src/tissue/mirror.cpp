@@ -178,7 +178,7 @@ std::vector<NodeId> drop_unused_nodes(Tissue& tissue) {
   return before;
 }
 
-Vectors Mirror::whole(std::span<const Vec3> of_side) const {
+Vectors Mirror::full_vectors(std::span<const Vec3> of_side) const {
   const MirroredVectors mirrored{*this, of_side};
   Vectors all(is_used() ? nodes.size() : of_side.size());
   for (std::size_t n = 0; n < all.size(); ++n) all[n] = mirrored[n];

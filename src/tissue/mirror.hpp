@@ -36,11 +36,11 @@ struct Mirror {
     return is_used() ? nodes[of_whole.index()] : Image{of_whole, Vec3::Ones()};
   }
   /// Return the cell on the side of which a cell of the full tissue is an image.
-  [[nodiscard]] CellId own(CellId of_whole) const {
+  [[nodiscard]] CellId original(CellId of_whole) const {
     return is_used() ? origins[cells[of_whole.index()].index()] : of_whole;
   }
   /// Return vectors (positions, or others that mirror likewise) of all nodes of the full tissue from those of a side.
-  [[nodiscard]] Vectors whole(std::span<const Vec3> of_side) const;
+  [[nodiscard]] Vectors full_vectors(std::span<const Vec3> of_side) const;
 };
 
 /// View of vectors of a side, read by nodes of the full tissue.

@@ -4,7 +4,7 @@
 
 namespace plica {
 
-double Tissue::own_share(std::span<const NodeId> nodes) const {
+double Tissue::side_share(std::span<const NodeId> nodes) const {
   double share = 1;
   for (int axis = 0; axis < 3; ++axis)
     if (is_mirrored[axis] &&

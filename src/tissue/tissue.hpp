@@ -158,7 +158,7 @@ struct Tissue {
 
   /// Return the fraction of an object spanned by these nodes that belongs to this side: 1/2 per mirror plane that
   /// contains all of them.
-  [[nodiscard]] double own_share(std::span<const NodeId> nodes) const;
+  [[nodiscard]] double side_share(std::span<const NodeId> nodes) const;
 
   [[nodiscard]] std::size_t node_count() const { return rest_positions.size(); }
   [[nodiscard]] std::size_t free_node_count() const { return rest_positions.size() - hanging.size(); }

@@ -52,7 +52,7 @@ void expect_same_forces(const Mirror& mirror, const Tissue& side, const Vectors&
   double apart = 0;
   for (std::size_t n = 0; n < of_whole.size(); ++n) {
     const auto [node, signs] = mirror.nodes[n];
-    Vec3 force = signs.cwiseProduct(of_side[node.index()]) / side.own_share({&node, 1});
+    Vec3 force = signs.cwiseProduct(of_side[node.index()]) / side.side_share({&node, 1});
     for (int axis = 0; axis < 3; ++axis)
       if (side.is_mirrored[axis] && side.rest_positions[node.index()][axis] == 0) force[axis] = 0;
     apart = std::max(apart, (force - of_whole[n]).norm());
@@ -88,7 +88,7 @@ TEST(FullModel, EachLawOfASideIsThatOfAHalfOrAQuarter) {
       return positions;
     };
     const Vectors x0 = moved(side->tissue.rest_positions, 0.5), x1 = moved(x0, 1), x2 = moved(x1, 1);
-    const Vectors w0 = mirror.whole(x0), w1 = mirror.whole(x1), w2 = mirror.whole(x2);
+    const Vectors w0 = mirror.full_vectors(x0), w1 = mirror.full_vectors(x1), w2 = mirror.full_vectors(x2);
     const Vectors still(x0.size(), Vec3::Zero()), whole_still(w0.size(), Vec3::Zero());
     std::vector<std::vector<double>> internals, whole_internals;
     for (const auto& law : side->laws) internals.push_back(law->first_internal(side->tissue));
@@ -106,7 +106,7 @@ TEST(FullModel, EachLawOfASideIsThatOfAHalfOrAQuarter) {
       expect_times(times, side->laws[l]->energy(step), whole->laws[l]->energy(whole_step), "energy");
       expect_same_forces(mirror, side->tissue, forces_of(*side->laws[l], step), forces_of(*whole->laws[l], whole_step),
                          "forces");
-      const Vectors direction = moved(still, 1), whole_direction = mirror.whole(direction);
+      const Vectors direction = moved(still, 1), whole_direction = mirror.full_vectors(direction);
       Vectors product = still, whole_product = whole_still;
       side->laws[l]->add_tangent_product(step, direction, product);
       whole->laws[l]->add_tangent_product(whole_step, whole_direction, whole_product);

@@ -275,7 +275,7 @@ TEST(Mirror, OneSideIsAHalfOrAQuarter) {
       double copies = 0;  // of nodes
       for (std::size_t n = 0; n < side.tissue.node_count(); ++n) {
         const NodeId node(n);
-        copies += static_cast<double>(times) * side.tissue.own_share({&node, 1});
+        copies += static_cast<double>(times) * side.tissue.side_share({&node, 1});
       }
       EXPECT_EQ(copies, static_cast<double>(whole.node_count()));
     }
@@ -285,7 +285,7 @@ TEST(Mirror, TheWholeIsWhereItWas) {
   const Tissue whole = pill({1, 2, 1});
   for (const auto& axes : {across_y, both}) {
     const auto [side, mirror] = side_of(whole, axes);
-    const Vectors again = mirror.whole(side.rest_positions);
+    const Vectors again = mirror.full_vectors(side.rest_positions);
     ASSERT_EQ(again.size(), whole.node_count());
     for (std::size_t n = 0; n < again.size(); ++n) EXPECT_LT((again[n] - whole.rest_positions[n]).norm(), 1e-10);
     for (const Vec3& x : side.rest_positions) EXPECT_TRUE(x.y() >= 0 && (!axes[0] || x.x() >= 0));
@@ -294,7 +294,7 @@ TEST(Mirror, TheWholeIsWhereItWas) {
       for (int axis = 0; axis < 2; ++axis)
         if (axes[axis]) centre[axis] = std::abs(centre[axis]);
       EXPECT_LT((cell_centre(side.cells[mirror.cells[c].index()], side.rest_positions) - centre).norm(), 1e-10);
-      EXPECT_EQ(mirror.own(mirror.own(CellId(c))), mirror.own(CellId(c)));
+      EXPECT_EQ(mirror.original(mirror.original(CellId(c))), mirror.original(CellId(c)));
     }
     for (std::size_t c = 0; c < side.cells.size(); ++c) {
       EXPECT_EQ(mirror.cells[mirror.origins[c].index()], CellId(c));

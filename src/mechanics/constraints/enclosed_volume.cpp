@@ -51,7 +51,7 @@ std::vector<EnclosedVolume::RimEdge> EnclosedVolume::open_rim(const Tissue& tiss
   std::vector<RimEdge> rim;
   for (const auto& [from, to] : rim_of(tissue, tissue.basal_facets))
     // The cap in a mirror plane contains the origin, so its cone has no volume.
-    if (tissue.own_share(std::array{from, to}) == 1)
+    if (tissue.side_share(std::array{from, to}) == 1)
       rim.push_back({from, to, Vec3(tissue.rest_positions[from.index()].x(), 0, 0)});
   return rim;
 }

@@ -16,7 +16,7 @@ std::vector<Ties::Tie> ties_along_x(const Tissue& tissue) {
     for (std::size_t i = 1; i < nodes.size(); ++i) {
       const std::array tied = {nodes[0], nodes[i]};
       ties.push_back({tied, tissue.rest_positions[nodes[i].index()] - tissue.rest_positions[nodes[0].index()],
-                      tissue.own_share(tied)});
+                      tissue.side_share(tied)});
     }
   return ties;
 }

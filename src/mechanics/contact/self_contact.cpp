@@ -122,7 +122,7 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
   std::map<NodeId, double> area_of_node;
   std::vector<double> areas;  // 0 of images, whose points are not this side's
   for (const Facet& facet : rule.side == CellSide::apical ? whole.apical_facets : whole.basal_facets) {
-    const bool is_own = mirror_.own(facet.cell) == facet.cell;
+    const bool is_own = mirror_.original(facet.cell) == facet.cell;
     areas.push_back(is_own ? facet_area(rest_corners(whole, facet)) : 0);
     for (const NodeId node : facet.nodes) {
       of_node[node].push_back(facets_.size());
@@ -256,7 +256,7 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> kn
 }
 
 std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<const double> known) const {
-  const Vectors of_whole = mirror_.is_used() ? mirror_.whole(positions) : Vectors();
+  const Vectors of_whole = mirror_.is_used() ? mirror_.full_vectors(positions) : Vectors();
   const Surface surface(*this, mirror_.is_used() ? std::span<const Vec3>(of_whole) : positions);
   const std::span<const Pair> before = pairs_of(known);
   auto last = before.begin();  // that of the point or of one after it; then those of edges

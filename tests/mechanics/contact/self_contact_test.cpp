@@ -205,7 +205,7 @@ TEST(SelfContact, OneSideLeansOnItsImage) {
   EXPECT_EQ(2 * points(motion), points(whole_motion));
   EXPECT_GT(points(motion), 10);
   for (Vec3& x : motion.positions) x.x() *= 0.8;
-  whole_motion.positions = mirror.whole(motion.positions);
+  whole_motion.positions = mirror.full_vectors(motion.positions);
   const double energy = of_side.energy(motion.step());
   EXPECT_GT(energy, 0);
   EXPECT_NEAR(2 * energy, of_whole.energy(whole_motion.step()), 1e-9 * energy);
@@ -238,11 +238,11 @@ TEST(SelfContact, EdgesLeanOnTheirImages) {
     const Vec3 moved = x + random.vector(1);
     x = {x.x() == 0 ? 0 : moved.x(), moved.y(), moved.z()};
   }
-  whole_motion.positions = mirror.whole(motion.positions);
+  whole_motion.positions = mirror.full_vectors(motion.positions);
   motion.internal = of_side.next_internal(motion.step());
   whole_motion.internal = of_whole.next_internal(whole_motion.step());
   for (Vec3& x : motion.positions) x.x() *= 0.7;
-  whole_motion.positions = mirror.whole(motion.positions);
+  whole_motion.positions = mirror.full_vectors(motion.positions);
   const auto pressed = [](const Motion& there, const auto& positions) {
     return std::ranges::count_if(SelfContact::pairs_of(there.internal), [&](const ContactPair& pair) {
       return pair.is_of_edges() && pair.gap(positions) < pair.distance;
