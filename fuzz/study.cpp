@@ -34,7 +34,8 @@ void check_as_experiments(const std::string& text) try {
   for (const Experiment& experiment : all.experiments) {
     require(!experiment.outcomes.empty() && experiment.draws >= 1);
     for (const Outcome& outcome : experiment.outcomes)
-      require(!outcome.question.empty() && !outcome.quantity.empty() && outcome.other < all.experiments.size());
+      require(!outcome.question.empty() && !outcome.quantity.empty() &&
+              outcome.compared_with < all.experiments.size());
   }
 } catch (const ScenarioError& error) {
   check_messages(error);
