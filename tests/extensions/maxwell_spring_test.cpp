@@ -13,6 +13,8 @@ class MaxwellSprings final : public Law {
   struct Spring {
     NodeId a, b;
     double stiffness, rest_length;  // nN/um, um: where it began
+
+    static auto parts(auto& spring) { return std::tie(spring.a, spring.b, spring.stiffness, spring.rest_length); }
   };
 
   MaxwellSprings(std::vector<Spring> springs, double relaxation_s)
@@ -93,6 +95,16 @@ class MaxwellSprings final : public Law {
         lengths.push_back(share * internal[first + whole]);
       });
     return lengths;
+  }
+  // Which edges were cut, the tissue alone does not tell.
+  [[nodiscard]] std::vector<double> past() const override { return as_numbers(springs_); }
+  [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const Division&, std::span<const Vec3>,
+                                              std::span<const double> past) const override {
+    std::vector<Spring> springs;
+    take_numbers({past.begin(), past.end()}, springs);
+    for (const Spring& spring : springs)
+      if (!spring.a.is_among(tissue.node_count()) || !spring.b.is_among(tissue.node_count())) throw InvalidNumbers();
+    return std::make_unique<MaxwellSprings>(std::move(springs), relaxation_s_);
   }
 
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }

@@ -131,7 +131,8 @@ TEST_F(CheckpointTest, DoesNotGrowWithTheRun) {
       std::ranges::find_if(checkpoints, [](const Checkpoint& checkpoint) { return checkpoint.run.changes != nullptr; });
   const auto first = divided + 2, last = checkpoints.end() - 1;
   ASSERT_GE(last - first, 3);
-  EXPECT_EQ(checkpoint_bytes(*last).size(),
+  // Times of frames are appended; HDF5 allots space in blocks.
+  EXPECT_LE(checkpoint_bytes(*last).size(),
             checkpoint_bytes(*first).size() + static_cast<std::size_t>(last - first) * sizeof(double));
 }
 
