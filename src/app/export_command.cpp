@@ -24,9 +24,7 @@ void write_tables(const SurfaceMesh& surface, const ExportCommand& command) {
   const auto [vertices, edges, faces] = tables_of(surface);
   const auto files = {std::pair("vert.csv", &vertices), {"edge.csv", &edges}, {"face.csv", &faces}};
   for (const auto& [name, text] : files) require_free((directory / name).string(), command.overwrite);
-  std::error_code error;
-  fs::create_directories(directory, error);
-  if (error) throw FileError(fmt::format("{}: {}", command.out, error.message()));
+  make_directory(directory);
   for (const auto& [name, text] : files) write_file(directory / name, *text);
 }
 

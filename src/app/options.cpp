@@ -12,6 +12,7 @@
 #include <iterator>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "core/names.hpp"
 #include "core/numbers.hpp"
 #include "core/threads.hpp"
@@ -26,8 +27,7 @@ namespace {
 void restart_with_short_waits(const std::string& scenario) {
 #if defined(__linux__) && !defined(__clang__)  // whose OpenMP has another name for it
   if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr) return;
-  std::error_code unknown;
-  if (fs::exists(scenario, unknown) && !fs::is_regular_file(scenario, unknown)) return;
+  if (std::error_code unknown; is_there(scenario) && !fs::is_regular_file(scenario, unknown)) return;
   std::ifstream file("/proc/self/cmdline", std::ios::binary);
   std::string words{std::istreambuf_iterator<char>(file), {}};  // each ends with a 0
   if (words.empty()) return;
@@ -70,7 +70,7 @@ void add_colour_option(CLI::App& command, std::string& colour, const std::string
 void require_free(const std::string& file, bool overwrite) {
   std::error_code error;
   if (fs::is_directory(file, error)) throw FileError(file + ": is a directory; give the name of a file");
-  if (!overwrite && fs::exists(file, error))
+  if (!overwrite && is_there(file))
     throw FileError(file + ": already exists; give another --out, or --overwrite to replace it");
 }
 

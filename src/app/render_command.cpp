@@ -84,8 +84,7 @@ std::vector<double> times_of(const RenderCommand& command, const RunPictures& ru
 }
 
 void write_picture(const fs::path& file, const std::string& png) {
-  std::error_code error;
-  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
+  if (file.has_parent_path()) make_directory(file.parent_path());
   write_file(file, png);
 }
 

@@ -147,6 +147,17 @@ std::string read_file(const fs::path& path, std::uintmax_t most_bytes) {
   return content;
 }
 
+bool is_there(const fs::path& path) {
+  std::error_code unknown;
+  return fs::exists(path, unknown);
+}
+
+void make_directory(const fs::path& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw FileError(fmt::format("{}: cannot be created: {}", path.string(), error.message()));
+}
+
 std::uintmax_t bytes_in(const fs::path& directory) {
   std::uintmax_t bytes = 0;
   std::error_code error;

@@ -15,6 +15,12 @@ inline constexpr std::uintmax_t largest_file_read_bytes = std::uintmax_t{256} <<
 /// Read a file. Throws FileError if it is unreadable, a directory, or larger than `most_bytes`.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most_bytes = largest_file_read_bytes);
 
+/// Whether a path exists; false if the system does not tell.
+bool is_there(const std::filesystem::path& path);
+
+/// Create a directory and those above it. Throws FileError `PATH: cannot be created: REASON`.
+void make_directory(const std::filesystem::path& path);
+
 /// Sum of the sizes of all files below a directory; unreadable ones count 0.
 std::uintmax_t bytes_in(const std::filesystem::path& directory);
 

@@ -290,8 +290,7 @@ Experiments parse_experiments(const std::string& name, const std::string& file, 
 Experiments read_experiments(const std::string& name_or_file) {
   if (const BuiltinFile* file = builtin_file(fs::path(name_or_file) / "experiments.toml"))
     return parse_experiments(name_or_file, std::string(file->path), std::string(file->text));
-  std::error_code error;
-  if (!fs::exists(name_or_file, error))
+  if (!is_there(name_or_file))
     throw UsageError(fmt::format(
         "\"{}\": not a file or built-in experiments; give paper, living, or a file of experiments", name_or_file));
   return parse_experiments(fs::path(name_or_file).stem().string(), name_or_file, read_file(name_or_file));

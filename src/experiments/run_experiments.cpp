@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <new>
 #include <numeric>
 
@@ -29,11 +30,6 @@ using Json = nlohmann::ordered_json;
 
 std::string draw_name(std::size_t draw) { return fmt::format("draw-{}", draw + 1); }
 
-bool is_there(const fs::path& path) {
-  std::error_code error;
-  return fs::exists(path, error);
-}
-
 // Refuse existing runs of another scenario.
 void require_same_scenario(const fs::path& folder, const Scenario& scenario) {
   if (!is_there(folder / "scenario.toml")) return;
@@ -46,21 +42,12 @@ void require_same_scenario(const fs::path& folder, const Scenario& scenario) {
 
 // Write the files of a run other than the first draw.
 void write_short(const fs::path& folder, const Scenario& scenario, const RunSummary& run) {
-  std::error_code error;
-  fs::create_directories(folder, error);
+  make_directory(folder);
   std::string series = fmt::format("{}\n", fmt::join(run.series_columns, ","));
   for (const Observation& row : run.rows) series += series_row(row, run.columns) + '\n';
   write_file(folder / "scenario.toml", resolved_toml(scenario));
   write_file(folder / "series.csv", series);
   write_file(folder / "summary.json", run.summary.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
-}
-
-// Whether the directory contains files other than those of experiments killed at their start.
-bool holds_something_else(const fs::path& directory) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(directory, error))
-    if (name_when_whole(entry.path().filename()) != "experiments.toml") return true;
-  return fs::exists(directory, error) && !fs::is_directory(directory, error);
 }
 
 // Runs of the first draw are recorded in full; others keep only numbers.
@@ -197,16 +184,14 @@ std::string ExperimentResults::csv() const {
 }
 
 void begin_experiments(const fs::path& directory, const Experiments& experiments, bool overwrite) {
-  std::error_code error;
   const bool holds_them = is_there(directory / "experiments.toml");
-  if (!holds_them && holds_something_else(directory))
+  if (!holds_them && holds_other_files(directory, std::array<std::string_view, 1>{"experiments.toml"}))
     throw UsageError(directory.string() + ": exists and contains no experiments; give another --out");
-  if (holds_them && overwrite) {
+  std::error_code ignored;
+  if (holds_them && overwrite)
     for (const char* name : {"runs", "unfinished", "experiments.csv", "outcomes.csv", "report.html"})
-      fs::remove_all(directory / name, error);
-  }
-  fs::create_directories(directory, error);
-  if (error) throw FileError(directory.string() + ": cannot be created: " + error.message());
+      fs::remove_all(directory / name, ignored);
+  make_directory(directory);
   write_file(directory / "experiments.toml", experiments.text);
 }
 

@@ -3,18 +3,22 @@
 #include <cmath>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 
 namespace plica {
 
+void require_results(const std::filesystem::path& directory) {
+  if (!is_there(directory))
+    throw FileError(directory.string() + ": directory does not exist; give the --out directory of a `plica run`");
+  if (!std::filesystem::is_directory(directory))
+    throw FileError(directory.string() + ": is not a directory of results; give the --out directory of a `plica run`");
+}
+
 ReferenceRun::ReferenceRun(std::filesystem::path directory) : directory_(std::move(directory)) {
-  std::error_code error;
-  const std::string name = directory_.string();
-  if (!std::filesystem::exists(directory_, error))
-    throw FileError(name + ": directory does not exist; give the --out directory of a `plica run`");
-  if (!std::filesystem::is_directory(directory_, error))
-    throw FileError(name + ": is not a directory of results; give the --out directory of a `plica run`");
-  if (!std::filesystem::exists(directory_ / "frames.pvd", error))
-    throw FileError(name + ": contains no run (no frames.pvd); give the --out directory of a `plica run`");
+  require_results(directory_);
+  if (!is_there(directory_ / "frames.pvd"))
+    throw FileError(directory_.string() +
+                    ": contains no run (no frames.pvd); give the --out directory of a `plica run`");
   frames_ = read_collection(directory_ / "frames.pvd");
   if (frames_.empty()) throw FileError((directory_ / "frames.pvd").string() + ": lists no snapshot");
 }

@@ -11,6 +11,9 @@
 
 namespace plica {
 
+/// Check that a directory exists, as that of results. Throws FileError.
+void require_results(const std::filesystem::path& directory);
+
 /// Snapshots of a directory of results, listed at construction and read on demand.
 class ReferenceRun {
  public:

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "core/numbers.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "scenario/load.hpp"
@@ -77,8 +78,7 @@ Series read_series(const std::filesystem::path& file, std::uintmax_t most_bytes)
 
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory) {
   const std::filesystem::path file = directory / "summary.json";
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) return nullptr;
+  if (!is_there(file)) return nullptr;
   try {
     nlohmann::ordered_json summary = nlohmann::ordered_json::parse(read_file(file));
     if (!summary.is_object()) throw FileError(file.string() + ": is not the summary of a run");
@@ -95,8 +95,7 @@ std::optional<double> number_of(const nlohmann::ordered_json& summary, const std
 
 std::optional<Scenario> scenario_of_run(const std::filesystem::path& directory) {
   const std::filesystem::path file = directory / "scenario.toml";
-  std::error_code error;
-  if (!std::filesystem::exists(file, error)) return {};
+  if (!is_there(file)) return {};
   try {
     return load_scenario({"scenario", file.string(), read_file(file)});
   } catch (const ScenarioError&) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "record/checkpoint.hpp"
 
 namespace plica {
@@ -51,25 +52,29 @@ void remove_half_written(const fs::path& directory) {
       if (is_half_written(entry.path().filename())) fs::remove(entry.path(), error);
 }
 
+bool holds_other_files(const fs::path& directory, std::span<const std::string_view> names) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(directory, error))
+    if (std::ranges::find(names, name_when_whole(entry.path().filename()).string()) == names.end()) return true;
+  return is_there(directory) && !fs::is_directory(directory, error);
+}
+
 bool holds_steps(const fs::path& directory) {
   const fs::path series = directory / "series.csv";
-  std::error_code error;
-  if (fs::exists(directory / "summary.json", error)) return true;
-  if (!fs::exists(series, error)) return false;
+  if (is_there(directory / "summary.json")) return true;
+  if (!is_there(series)) return false;
   constexpr auto without_steps = 2;  // header and row of the reference state
   std::ifstream rows(series);
   return std::count(std::istreambuf_iterator<char>(rows), {}, '\n') > without_steps;
 }
 
 bool holds_ending(const fs::path& directory, bool with_report) {
-  std::error_code error;
-  return fs::exists(directory / "summary.json", error) &&
-         (!with_report || fs::exists(directory / "report.html", error));
+  return is_there(directory / "summary.json") && (!with_report || is_there(directory / "report.html"));
 }
 
 void prepare_directory(const fs::path& directory, bool overwrite) {
   std::error_code error;
-  if (fs::exists(directory, error) && !fs::is_directory(directory, error))
+  if (is_there(directory) && !fs::is_directory(directory, error))
     throw FileError(directory.string() + ": is a file, not a directory; give another --out");
   if (holds_results(directory)) {
     if (!overwrite)
@@ -82,9 +87,7 @@ void prepare_directory(const fs::path& directory, bool overwrite) {
     for (const auto& entry : fs::directory_iterator(directory / "frames", error))
       if (is_frame(entry.path())) fs::remove(entry.path(), error);
   }
-  error.clear();
-  fs::create_directories(directory / "frames", error);
-  if (error) throw FileError(directory.string() + ": cannot be created: " + error.message());
+  make_directory(directory / "frames");
 }
 
 void remove_what_came_after(const fs::path& directory, std::size_t kept) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace plica {
 
@@ -12,6 +14,9 @@ std::string frame_file(std::size_t number);
 /// Prepare `directory` for results; with `overwrite`, remove the files written by plica and no others. Throws FileError
 /// if it cannot be created or written, or contains results and `overwrite` is false.
 void prepare_directory(const std::filesystem::path& directory, bool overwrite);
+
+/// Whether there is something else than a directory with files of these names, whole or temporary, at most.
+bool holds_other_files(const std::filesystem::path& directory, std::span<const std::string_view> names);
 
 /// Whether the directory contains steps: more than the files of a run that ended before its first checkpoint.
 bool holds_steps(const std::filesystem::path& directory);

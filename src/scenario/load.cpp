@@ -235,8 +235,7 @@ ScenarioSource find_scenario(const std::string& name_or_path, const fs::path& be
     if (scenario.name == name_or_path) return {name_or_path, name_or_path, std::string(scenario.toml)};
   }
   const fs::path path(name_or_path);
-  std::error_code error;
-  if (!fs::exists(path, error))
+  if (!is_there(path))
     throw UsageError(fmt::format("\"{}\" is neither a built-in scenario nor a file; {}", name_or_path,
                                  nearest_scenario(path, beside)));
   return {path.stem().string(), name_or_path, read_file(path, largest_scenario_bytes)};

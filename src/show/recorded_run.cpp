@@ -24,7 +24,7 @@ void refuse_to_replace_input(const std::string& scenario_file, const std::vector
   for (const char* name : {"scenario.toml", "scenario.input.toml"})
     if (fs::equivalent(scenario_file, out / name, error))
       throw UsageError(scenario_file + ": would be replaced by the results; give another --out, or move the scenario");
-  if (fs::exists(out / "study.json", error)) throw UsageError(out.string() + ": contains a study; give another --out");
+  if (is_there(out / "study.json")) throw UsageError(out.string() + ": contains a study; give another --out");
   for (const Monitor& monitor : monitors)
     if (monitor.reference_run && fs::equivalent(monitor.reference_run->directory(), out, error))
       throw UsageError(

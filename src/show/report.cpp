@@ -47,10 +47,7 @@ std::string replaced(std::string_view text, std::string_view place, const std::s
   return fmt::format("{}{}{}", text.substr(0, at), by, text.substr(at + place.size()));
 }
 
-std::string text_of(const fs::path& file) {
-  std::error_code error;
-  return fs::exists(file, error) ? read_file(file) : "";
-}
+std::string text_of(const fs::path& file) { return is_there(file) ? read_file(file) : ""; }
 
 ordered_json shell_json(const std::optional<Scenario>& scenario, const Vectors& rest_positions) {
   const std::optional<Capsule> shell = scenario ? shell_of_run(*scenario, rest_positions) : std::nullopt;
@@ -229,12 +226,8 @@ ReportRun make_report_run(const fs::path& directory, const ReportFrames& frames)
 }
 
 ReportRun read_report_run(const fs::path& directory, double most_bytes) {
-  std::error_code error;
-  if (!fs::exists(directory, error))
-    throw FileError(directory.string() + ": directory does not exist; give the --out directory of a `plica run`");
-  if (!fs::is_directory(directory, error))
-    throw FileError(directory.string() + ": is not a directory of results; give the --out directory of a `plica run`");
-  const bool has_frames = fs::exists(directory / "frames.pvd", error);
+  require_results(directory);
+  const bool has_frames = is_there(directory / "frames.pvd");
   if (!has_frames && text_of(directory / "series.csv").empty())
     throw FileError(directory.string() + ": contains no results; give the --out directory of a `plica run`");
   ReportFrames frames(most_bytes);

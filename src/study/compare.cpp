@@ -100,8 +100,7 @@ Json compare_scenarios(const ReferenceRun& a, const ReferenceRun& b) {
   std::vector<std::string> texts;
   for (const ReferenceRun* run : {&a, &b}) {
     const std::filesystem::path file = run->directory() / "scenario.toml";
-    std::error_code error;
-    if (!std::filesystem::exists(file, error)) return keys;
+    if (!is_there(file)) return keys;
     texts.push_back(read_file(file));
   }
   const auto value = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
@@ -123,9 +122,8 @@ Json compare_summaries(const Json& a, const Json& b) {
 
 /// Read series.csv; a killed run may have none, then there is nothing to compare.
 std::optional<Series> series_of(const ReferenceRun& run) {
-  std::error_code error;
   const std::filesystem::path file = run.directory() / "series.csv";
-  if (!std::filesystem::exists(file, error)) return std::nullopt;
+  if (!is_there(file)) return std::nullopt;
   return read_series(file);
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "core/version.hpp"
 #include "measure/measure_set.hpp"
 #include "record/archive.hpp"
@@ -36,8 +37,7 @@ class UnfinishedRun {
   // state only.
   std::vector<Observation> begin() {
     std::vector<Observation> at_rest = {simulation_.measures()};
-    std::error_code error;
-    if (!can_archive() || !fs::exists(directory_, error) || !can_lock()) return at_rest;
+    if (!can_archive() || !is_there(directory_) || !can_lock()) return at_rest;
     try {
       std::string complaint;
       std::optional<Checkpoint> kept = read_checkpoint(directory_, complaint);
@@ -63,8 +63,7 @@ class UnfinishedRun {
   void step_accepted(const std::vector<Observation>& rows, double wall_s) {
     if (!can_archive() || wall_s < next_s_ || !simulation_.is_resumable()) return;
     next_s_ = wall_s + every_s_;
-    std::error_code error;
-    fs::create_directories(directory_, error);
+    make_directory(directory_);
     if (!can_lock()) return;
     if (!files_) files_ = std::make_unique<CheckpointFiles>(directory_);
     checkpoint_.run = simulation_.memory();

@@ -124,10 +124,9 @@ void submit_open(const StudyDirectory& directory, const SlurmOptions& options, i
 
 SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, const SlurmOptions& options,
                                 const std::function<bool()>& stop) {
-  std::error_code error;
-  fs::create_directories(folder(directory) / "log", error);
-  if (error) throw FileError(folder(directory).string() + ": cannot be created: " + error.message());
-  fs::remove(folder(directory) / "cancelled", error);
+  make_directory(folder(directory) / "log");
+  std::error_code ignored;
+  fs::remove(folder(directory) / "cancelled", ignored);
   SlurmSubmission plan;
   const std::vector<std::size_t> open = directory.open_runs();
   if (!open.empty())
@@ -166,8 +165,7 @@ std::string go_on_on_slurm(const StudyDirectory& directory) {
   const std::size_t missing = directory.open_runs().size();
   const Json jobs = jobs_in(directory);
   const int attempt = jobs.value("attempt", 0);
-  std::error_code error;
-  const bool is_cancelled = fs::exists(folder(directory) / "cancelled", error);
+  const bool is_cancelled = is_there(folder(directory) / "cancelled");
   if (missing > 0 && !is_cancelled && attempt < jobs.value("retries", 0)) {
     SlurmSubmission plan;
     plan.run_s = jobs.value("run_s", 0.0), plan.memory_MB = jobs.value("memory_MB", 1000);
@@ -179,15 +177,9 @@ std::string go_on_on_slurm(const StudyDirectory& directory) {
   return missing == 0 ? "all runs have a result" : fmt::format("{} runs have no result", missing);
 }
 
-bool was_submitted(const StudyDirectory& directory) {
-  std::error_code error;
-  return fs::exists(folder(directory) / "jobs.json", error);
-}
+bool was_submitted(const StudyDirectory& directory) { return is_there(folder(directory) / "jobs.json"); }
 
-bool slurm_has_ended(const StudyDirectory& directory) {
-  std::error_code error;
-  return fs::exists(folder(directory) / "ended", error);
-}
+bool slurm_has_ended(const StudyDirectory& directory) { return is_there(folder(directory) / "ended"); }
 
 void cancel_on_slurm(const StudyDirectory& directory) {
   const Json jobs = jobs_in(directory);

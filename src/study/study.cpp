@@ -124,8 +124,7 @@ std::optional<RunRow> Study::run(std::size_t run, const fs::path& directory, con
     row = row_of(summary, measures_);
     if (row.status == "interrupted") return {};
     if (input_.each == KeptOfRun::summary) {
-      std::error_code error;
-      fs::create_directories(place, error);
+      make_directory(place);
       write_file(place / "summary.json", summary.dump(2) + '\n');
     }
   } catch (const ScenarioError& error) {

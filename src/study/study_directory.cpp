@@ -9,6 +9,7 @@
 #include <chrono>
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "core/numbers.hpp"
 #include "core/version.hpp"
 #include "record/run_directory.hpp"
@@ -57,14 +58,9 @@ void require_same_scenario(const fs::path& directory, const StudyInput& input) {
                     "the start of the study");
 }
 
-// Whether the directory contains files other than those of a study killed at its start.
-bool holds_something_else(const fs::path& directory) {
-  constexpr std::array<std::string_view, 5> own = {"rows", "study.toml", "scenario.toml", "points.csv", "study.json"};
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(directory, error))
-    if (std::ranges::find(own, name_when_whole(entry.path().filename()).string()) == own.end()) return true;
-  return fs::exists(directory, error) && !fs::is_directory(directory, error);
-}
+// Files of a study killed at its start.
+constexpr std::array<std::string_view, 5> first_files = {"rows", "study.toml", "scenario.toml", "points.csv",
+                                                         "study.json"};
 
 // Complete rows of a file: "run,row".
 void read_rows(const fs::path& file, StudyRows& rows, std::size_t runs) {
@@ -85,9 +81,8 @@ void read_rows(const fs::path& file, StudyRows& rows, std::size_t runs) {
 
 StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& study, Start start) {
   StudyDirectory result(directory);
-  std::error_code error;
   const StudyInput& input = study.input();
-  const bool holds_one = fs::exists(directory / "study.json", error);
+  const bool holds_one = is_there(directory / "study.json");
   if (holds_one && start == Start::resumed) {
     require_same_plica(directory, result.begun());
     require_unchanged(directory / "study.toml", input.text, "study " + input.file, "its start");
@@ -101,14 +96,13 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
     throw UsageError(
         directory.string() +
         ": contains a study; continue it with --resume, replace it with --overwrite, or give another --out");
-  if (!holds_one && holds_something_else(directory))
+  if (!holds_one && holds_other_files(directory, first_files))
     throw UsageError(directory.string() + ": exists and contains no study; give another --out");
-  fs::create_directories(directory, error);
-  if (error) throw FileError(directory.string() + ": cannot be created: " + error.message());
-  fs::remove(directory / "study.json", error);
-  for (const char* name : {"rows", "points", "unfinished", "slurm"}) fs::remove_all(directory / name, error);
-  for (const char* name : {"runs.csv", "report.html"}) fs::remove(directory / name, error);
-  fs::create_directories(directory / "rows", error);
+  make_directory(directory);
+  std::error_code ignored;
+  for (const char* name : {"study.json", "rows", "points", "unfinished", "slurm", "runs.csv", "report.html"})
+    fs::remove_all(directory / name, ignored);
+  make_directory(directory / "rows");
   write_file(directory / "study.toml", input.text);
   write_file(directory / "scenario.toml", resolved_scenario(input));
   write_file(directory / "points.csv", points_csv(study.design()));
@@ -125,8 +119,7 @@ StudyDirectory StudyDirectory::begin(const fs::path& directory, const Study& stu
 }
 
 StudyDirectory StudyDirectory::look(const fs::path& directory) {
-  std::error_code error;
-  if (!fs::exists(directory / "study.json", error))
+  if (!is_there(directory / "study.json"))
     throw FileError(directory.string() + ": contains no study; create one with plica study STUDY.toml --out DIR");
   return StudyDirectory(directory);
 }

@@ -268,7 +268,7 @@ StudyInput parse_study(const std::string& name, const std::string& file, const s
 }
 
 StudyInput read_study(const std::string& file) {
-  if (std::error_code error; !fs::exists(file, error) && std::ranges::count(names_of(builtin_scenarios()), file) > 0)
+  if (!is_there(file) && std::ranges::count(names_of(builtin_scenarios()), file) > 0)
     throw UsageError(fmt::format("{0}: is a scenario, not a study; run it with plica run {0} --out DIR", file));
   return parse_study(fs::path(file).stem().string(), file, read_file(file));
 }

@@ -25,8 +25,7 @@ using Json = nlohmann::ordered_json;
 // Rows of rows/, else of runs.csv.
 StudyRows rows_of(const fs::path& directory) {
   StudyRows rows = StudyDirectory::look(directory).rows();
-  std::error_code error;
-  if (!fs::exists(directory / "runs.csv", error)) return rows;
+  if (!is_there(directory / "runs.csv")) return rows;
   const auto table = csv_fields(read_file(directory / "runs.csv"));
   for (std::size_t r = 1; r < table.size(); ++r) {
     std::string row;
@@ -42,9 +41,8 @@ StudyRows rows_of(const fs::path& directory) {
 
 // Path of the most informative file kept of a run, below points/; empty without one.
 std::string kept_of(const fs::path& points, const std::string& name) {
-  std::error_code error;
   for (const char* file : {"/report.html", "/summary.json"})
-    if (fs::exists(points / (name + file), error)) return name + file;
+    if (is_there(points / (name + file))) return name + file;
   return "";
 }
 
@@ -82,10 +80,7 @@ Json study_description(const fs::path& directory, const Json& begun) {
 
 }  // namespace
 
-bool holds_study(const fs::path& directory) {
-  std::error_code error;
-  return fs::exists(directory / "study.json", error);
-}
+bool holds_study(const fs::path& directory) { return is_there(directory / "study.json"); }
 
 std::string study_report_page(const fs::path& directory, const fs::path& place) {
   const StudyRows rows = rows_of(directory);
