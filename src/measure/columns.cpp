@@ -119,8 +119,8 @@ const char* in_summary(const Column& column) {
 
 const char* mark(bool is_there) { return is_there ? "x" : ""; }
 
-const char* owner(QuantityInfo::Of of) {
-  return of == QuantityInfo::Of::node ? "node" : of == QuantityInfo::Of::cell ? "cell" : "region";
+const char* owner(Quantity::Of of) {
+  return of == Quantity::Of::node ? "node" : of == Quantity::Of::region ? "region" : "cell";
 }
 
 std::string step_table() {
@@ -163,7 +163,7 @@ std::string plain_table(const char* heading, const Columns& columns) {
 
 std::string quantity_table() {
   std::string text = "\n### Quantities of monitors\n\n| quantity | per | unit | meaning |\n|---|---|---|---|\n";
-  for (const QuantityInfo& info : quantities())
+  for (const Quantity& info : quantities())
     text += fmt::format("| `{}` | {} | {} | {} |\n", info.name, owner(info.of),
                         info.unit.empty() ? "" : fmt::format("`{}`", info.unit), info.meaning);
   return text;

@@ -14,52 +14,6 @@
 #include "tissue/mirror.hpp"
 
 namespace plica {
-namespace {
-
-using Info = QuantityInfo;
-constexpr auto may = Info::Axis::may_have, must = Info::Axis::must_have, no_axis = Info::Axis::none;
-
-constexpr std::array<Info, 18> table = {{
-    {Quantity::position, "position", "um", Info::Of::node, "Coordinate along `axis`.", must},
-    {Quantity::displacement, "displacement", "um", Info::Of::node,
-     "Displacement from the reference state: norm, or component.", may},
-    {Quantity::speed, "speed", "um_per_s", Info::Of::node,
-     "Norm of the velocity at the end of the step (`backward-euler`: mean over the step)."},
-    {Quantity::velocity, "velocity", "um_per_s", Info::Of::node, "Component of the velocity along `axis`.", must},
-    {Quantity::deviation, "deviation", "um", Info::Of::node,
-     "Displacement from the same node of the run `reference`: norm, or component.", may, Info::Reference::run},
-    {Quantity::relative_energy_norm, "relative_energy_norm", "", Info::Of::region,
-     "$\\sqrt{(u-u_r)^TK(u-u_r)}\\,/\\sqrt{u_r^TKu_r}$ of displacements $u$, $u_r$ those of `reference`; $K$: linear "
-     "stiffness of the region's undeformed elements. Includes rigid rotation. No value for an undeformed reference.",
-     no_axis, Info::Reference::run},
-    {Quantity::surface_distance, "surface_distance", "um", Info::Of::node,
-     "Distance to the surface in the mesh file `reference` (VTK, STL, PLY, OBJ; boundary of a volume mesh); >= 0.",
-     no_axis, Info::Reference::surface},
-    {Quantity::force, "force", "nN", Info::Of::node,
-     "Static force of elasticity, contractions and applied pressures on the node, without cell pressures and shell "
-     "contact, which balance it at equilibrium. With `from = \"REGION\"`: force of the cells of this region, including "
-     "their cell pressures.",
-     may},
-    {Quantity::volume, "volume", "um3", Info::Of::cell, "Cell volume; negative if inverted."},
-    {Quantity::area, "area", "um2", Info::Of::cell, "Apical area, or basal with `face = \"basal\"`."},
-    {Quantity::area_ratio, "area_ratio", "", Info::Of::cell,
-     "Apical area / reference area; means are over cells, not weighted by area."},
-    {Quantity::apical_elongation, "apical_elongation", "", Info::Of::cell,
-     "Length of the apical surface along x / width across, of the rectangle with its second moments. None at a pole."},
-    {Quantity::pressure, "pressure", "Pa", Info::Of::cell, "Cell pressure; positive in compression."},
-    {Quantity::apical_load, "apical_load", "Pa", Info::Of::cell,
-     "Inward component of the driving force (as `force`) per apical area around a node, mean over the cell's apical "
-     "corners."},
-    {Quantity::inward_displacement, "inward_displacement", "um", Info::Of::cell,
-     "Displacement of the mean apical corner against the outward reference normal."},
-    {Quantity::kinetic_energy, "kinetic_energy", "nN_um", Info::Of::region,
-     "$\\tfrac12\\sum m v^2$ with lumped masses; requires a density."},
-    {Quantity::time, "time", "s", Info::Of::region, "Simulated time; for stop criteria."},
-    {Quantity::wall, "wall", "s", Info::Of::region,
-     "Computing time of all steps so far; the only quantity that differs between repeated runs."},
-}};
-
-}  // namespace
 
 Vectors forces_of_cells(const Model& model, const State& state, const CellSet& cells) {
   Tissue part = model.tissue;
@@ -124,46 +78,49 @@ std::vector<double> kinetic_energy_values(const Monitor& monitor, const Moment& 
   return {mass / rest_volume * energy_of_unit_density};
 }
 
-std::vector<double> node_values(const Monitor& monitor, const Moment& moment) {
-  const Tissue& tissue = moment.model.tissue;
-  const State& state = moment.state;
-  const std::vector<NodeId> nodes = monitored_nodes(monitor, tissue);
-  const auto collect = [&](const auto& vector_at) {  // component or norm at each node
-    std::vector<double> values;
-    for (const NodeId node : nodes) {
-      const Vec3 vector = vector_at(node.index());
-      values.push_back(monitor.axis ? vector[*monitor.axis] : vector.norm());
-    }
-    return values;
-  };
-  switch (monitor.quantity) {
-    case Quantity::position:
-      return collect([&](std::size_t n) { return state.positions[n]; });
-    case Quantity::displacement:
-      return collect([&](std::size_t n) -> Vec3 { return state.positions[n] - tissue.rest_positions[n]; });
-    case Quantity::speed:
-    case Quantity::velocity:
-      return collect([&](std::size_t n) { return state.velocities[n]; });
-    case Quantity::deviation: {
-      const std::optional<Frame> frame = reference_frame(monitor, moment);
-      if (!frame) return {};
-      return collect([&](std::size_t n) -> Vec3 { return state.positions[n] - frame->positions[n]; });
-    }
-    case Quantity::force: {
-      const Vectors forces = monitor.from.empty()
-                                 ? driving_forces(moment.model, state)
-                                 : forces_of_cells(moment.model, state, tissue.regions.at(monitor.from));
-      return collect([&](std::size_t n) { return forces[n]; });
-    }
-    case Quantity::surface_distance: {
-      std::vector<double> values;
-      values.reserve(nodes.size());
-      for (const NodeId node : nodes) values.push_back(monitor.reference_surface->from(state.positions[node.index()]));
-      return values;
-    }
-    default:
-      return {};
+/// Component or norm of a vector at each node of the monitor.
+template <class VectorAt>
+std::vector<double> at_nodes(const Monitor& monitor, const Moment& moment, const VectorAt& vector_at) {
+  std::vector<double> values;
+  for (const NodeId node : monitored_nodes(monitor, moment.model.tissue)) {
+    const Vec3 vector = vector_at(node.index());
+    values.push_back(monitor.axis ? vector[*monitor.axis] : vector.norm());
   }
+  return values;
+}
+
+std::vector<double> positions(const Monitor& monitor, const Moment& moment) {
+  return at_nodes(monitor, moment, [&](std::size_t n) { return moment.state.positions[n]; });
+}
+
+std::vector<double> displacements(const Monitor& monitor, const Moment& moment) {
+  const Vectors& rest = moment.model.tissue.rest_positions;
+  return at_nodes(monitor, moment, [&](std::size_t n) -> Vec3 { return moment.state.positions[n] - rest[n]; });
+}
+
+std::vector<double> velocities(const Monitor& monitor, const Moment& moment) {
+  return at_nodes(monitor, moment, [&](std::size_t n) { return moment.state.velocities[n]; });
+}
+
+std::vector<double> deviations(const Monitor& monitor, const Moment& moment) {
+  const std::optional<Frame> frame = reference_frame(monitor, moment);
+  if (!frame) return {};
+  return at_nodes(monitor, moment,
+                  [&](std::size_t n) -> Vec3 { return moment.state.positions[n] - frame->positions[n]; });
+}
+
+std::vector<double> node_forces(const Monitor& monitor, const Moment& moment) {
+  const auto& [model, state, wall_s] = moment;
+  const Vectors forces = monitor.from.empty() ? driving_forces(model, state)
+                                              : forces_of_cells(model, state, model.tissue.regions.at(monitor.from));
+  return at_nodes(monitor, moment, [&](std::size_t n) { return forces[n]; });
+}
+
+std::vector<double> surface_distances(const Monitor& monitor, const Moment& moment) {
+  std::vector<double> values;
+  for (const NodeId node : monitored_nodes(monitor, moment.model.tissue))
+    values.push_back(monitor.reference_surface->from(moment.state.positions[node.index()]));
+  return values;
 }
 
 std::vector<double> elongations(const Monitor& monitor, const Moment& moment) {
@@ -176,8 +133,14 @@ std::vector<double> elongations(const Monitor& monitor, const Moment& moment) {
   return values;
 }
 
-// Apical load of all cells, Pa.
-std::vector<double> apical_loads(const Moment& moment) {
+// Those of the monitor's cells among values of all cells.
+std::vector<double> at_cells(const Monitor& monitor, const Moment& moment, const std::vector<double>& of_all) {
+  std::vector<double> values;
+  for (const CellId cell : monitored_cells(monitor, moment.model.tissue)) values.push_back(of_all[cell.index()]);
+  return values;
+}
+
+std::vector<double> apical_loads(const Monitor& monitor, const Moment& moment) {
   const Tissue& tissue = moment.model.tissue;
   const Vectors forces = driving_forces(moment.model, moment.state);
   Vectors areas(tissue.node_count(), Vec3::Zero());
@@ -191,7 +154,7 @@ std::vector<double> apical_loads(const Moment& moment) {
   std::vector<double> of_cells;
   of_cells.reserve(tissue.cells.size());
   for (const Cell& cell : tissue.cells) of_cells.push_back(mean_apical(cell, loads).x());
-  return of_cells;
+  return at_cells(monitor, moment, of_cells);
 }
 
 std::vector<double> inward_displacements(const Monitor& monitor, const Moment& moment) {
@@ -205,58 +168,87 @@ std::vector<double> inward_displacements(const Monitor& monitor, const Moment& m
   return values;
 }
 
-std::vector<double> cell_values(const Monitor& monitor, const Moment& moment) {
-  if (monitor.quantity == Quantity::apical_elongation) return elongations(monitor, moment);
-  if (monitor.quantity == Quantity::inward_displacement) return inward_displacements(monitor, moment);
-  const Tissue& tissue = moment.model.tissue;
-  std::vector<double> of_all;
-  if (monitor.quantity == Quantity::volume) of_all = moment.model.volumes.volumes(moment.state.positions);
-  if (monitor.quantity == Quantity::area)
-    of_all = monitor.face == Monitor::Face::basal ? basal_areas(tissue, moment.state.positions)
-                                                  : apical_areas(tissue, moment.state.positions);
-  if (monitor.quantity == Quantity::area_ratio) {
-    of_all = apical_areas(tissue, moment.state.positions);
-    const std::vector<double> at_rest = rest_apical_areas(tissue);
-    for (std::size_t c = 0; c < of_all.size(); ++c) of_all[c] /= at_rest[c];
-  }
-  if (monitor.quantity == Quantity::apical_load) of_all = apical_loads(moment);
-  if (monitor.quantity == Quantity::pressure && moment.model.volumes.is_held())
-    for (const double pressure : moment.state.pressures(moment.model)) of_all.push_back(pressure / units::pascal);
-  std::vector<double> values;
-  if (of_all.empty()) return values;
-  for (const CellId cell : monitored_cells(monitor, tissue)) values.push_back(of_all[cell.index()]);
-  return values;
+std::vector<double> volumes(const Monitor& monitor, const Moment& moment) {
+  return at_cells(monitor, moment, moment.model.volumes.volumes(moment.state.positions));
 }
 
-std::vector<double> region_values(const Monitor& monitor, const Moment& moment) {
-  switch (monitor.quantity) {
-    case Quantity::relative_energy_norm:
-      return energy_norm_values(monitor, moment);
-    case Quantity::kinetic_energy:
-      return kinetic_energy_values(monitor, moment);
-    case Quantity::time:
-      return {moment.state.time_s};
-    case Quantity::wall:
-      return {moment.wall_s};
-    default:
-      return {};
-  }
+std::vector<double> areas(const Monitor& monitor, const Moment& moment) {
+  const auto areas_of = monitor.face == Monitor::Face::basal ? basal_areas : apical_areas;
+  return at_cells(monitor, moment, areas_of(moment.model.tissue, moment.state.positions));
 }
+
+std::vector<double> area_ratios(const Monitor& monitor, const Moment& moment) {
+  std::vector<double> ratios = apical_areas(moment.model.tissue, moment.state.positions);
+  const std::vector<double> at_rest = rest_apical_areas(moment.model.tissue);
+  for (std::size_t c = 0; c < ratios.size(); ++c) ratios[c] /= at_rest[c];
+  return at_cells(monitor, moment, ratios);
+}
+
+std::vector<double> pressures(const Monitor& monitor, const Moment& moment) {
+  if (!moment.model.volumes.is_held()) return {};
+  std::vector<double> in_Pa;
+  for (const double pressure : moment.state.pressures(moment.model)) in_Pa.push_back(pressure / units::pascal);
+  return at_cells(monitor, moment, in_Pa);
+}
+
+std::vector<double> simulated_time(const Monitor&, const Moment& moment) { return {moment.state.time_s}; }
+
+std::vector<double> computing_time(const Monitor&, const Moment& moment) { return {moment.wall_s}; }
+
+using Of = Quantity::Of;
+using Reference = Quantity::Reference;
+constexpr auto may = Quantity::Axis::may_have, must = Quantity::Axis::must_have, no_axis = Quantity::Axis::none;
+
+constexpr std::array<Quantity, 18> table = {{
+    {"position", "um", Of::node, positions, "Coordinate along `axis`.", must},
+    {"displacement", "um", Of::node, displacements, "Displacement from the reference state: norm, or component.", may},
+    {"speed", "um_per_s", Of::node, velocities,
+     "Norm of the velocity at the end of the step (`backward-euler`: mean over the step)."},
+    {"velocity", "um_per_s", Of::node, velocities, "Component of the velocity along `axis`.", must},
+    {"deviation", "um", Of::node, deviations,
+     "Displacement from the same node of the run `reference`: norm, or component.", may, Reference::run},
+    {"relative_energy_norm", "", Of::region, energy_norm_values,
+     "$\\sqrt{(u-u_r)^TK(u-u_r)}\\,/\\sqrt{u_r^TKu_r}$ of displacements $u$, $u_r$ those of `reference`; $K$: linear "
+     "stiffness of the region's undeformed elements. Includes rigid rotation. No value for an undeformed reference.",
+     no_axis, Reference::run},
+    {"surface_distance", "um", Of::node, surface_distances,
+     "Distance to the surface in the mesh file `reference` (VTK, STL, PLY, OBJ; boundary of a volume mesh); >= 0.",
+     no_axis, Reference::surface},
+    {"force", "nN", Of::node, node_forces,
+     "Static force of elasticity, contractions and applied pressures on the node, without cell pressures and shell "
+     "contact, which balance it at equilibrium. With `from = \"REGION\"`: force of the cells of this region, including "
+     "their cell pressures.",
+     may},
+    {"volume", "um3", Of::cell, volumes, "Cell volume; negative if inverted."},
+    {"area", "um2", Of::side, areas, "Apical area, or basal with `face = \"basal\"`."},
+    {"area_ratio", "", Of::side, area_ratios,
+     "Apical area / reference area; means are over cells, not weighted by area."},
+    {"apical_elongation", "", Of::side, elongations,
+     "Length of the apical surface along x / width across, of the rectangle with its second moments. None at a pole."},
+    {"pressure", "Pa", Of::cell, pressures, "Cell pressure; positive in compression."},
+    {"apical_load", "Pa", Of::side, apical_loads,
+     "Inward component of the driving force (as `force`) per apical area around a node, mean over the cell's apical "
+     "corners."},
+    {"inward_displacement", "um", Of::side, inward_displacements,
+     "Displacement of the mean apical corner against the outward reference normal."},
+    {"kinetic_energy", "nN_um", Of::region, kinetic_energy_values,
+     "$\\tfrac12\\sum m v^2$ with lumped masses; requires a density."},
+    {"time", "s", Of::region, simulated_time, "Simulated time; for stop criteria."},
+    {"wall", "s", Of::region, computing_time,
+     "Computing time of all steps so far; the only quantity that differs between repeated runs."},
+}};
 
 }  // namespace
 
-std::span<const QuantityInfo> quantities() { return table; }
+std::span<const Quantity> quantities() { return table; }
 
-const QuantityInfo& info_of(Quantity quantity) { return table[static_cast<std::size_t>(quantity)]; }
-
-const QuantityInfo* quantity_named(std::string_view name) {
-  const auto found = std::ranges::find(table, name, &QuantityInfo::name);
+const Quantity* quantity_named(std::string_view name) {
+  const auto found = std::ranges::find(table, name, &Quantity::name);
   return found == table.end() ? nullptr : &*found;
 }
 
 std::string Monitor::column() const {
-  const QuantityInfo& info = info_of(quantity);
-  return fmt::format("{}.{}{}{}", name, info.name, info.unit.empty() ? "" : "_", info.unit);
+  return fmt::format("{}.{}{}{}", name, quantity->name, quantity->unit.empty() ? "" : "_", quantity->unit);
 }
 
 std::vector<NodeId> monitored_nodes(const Monitor& monitor, const Tissue& tissue) {
@@ -278,10 +270,8 @@ std::vector<NodeId> monitored_nodes(const Monitor& monitor, const Tissue& tissue
 }
 
 std::vector<CellId> monitored_cells(const Monitor& monitor, const Tissue& tissue) {
-  using enum Quantity;
   CellSet chosen = tissue.regions.at(monitor.region);
-  if (std::ranges::count(std::array{area, area_ratio, apical_elongation, apical_load, inward_displacement},
-                         monitor.quantity) > 0) {
+  if (monitor.quantity->of == Of::side) {
     CellSet has_side(chosen.size(), false);
     for (const Facet& facet : monitor.face == Monitor::Face::basal ? tissue.basal_facets : tissue.apical_facets)
       has_side[facet.cell.index()] = chosen[facet.cell.index()];
@@ -305,9 +295,7 @@ std::optional<double> combined(Over over, std::span<const double> values) {
 }
 
 Reading read_monitor(const Monitor& monitor, const Moment& moment) {
-  const Info::Of of = info_of(monitor.quantity).of;
-  const auto values_of = of == Info::Of::node ? node_values : of == Info::Of::cell ? cell_values : region_values;
-  const std::vector<double> values = values_of(monitor, moment);
+  const std::vector<double> values = monitor.quantity->values(monitor, moment);
   return {values, combined(monitor.over, values)};
 }
 

@@ -15,47 +15,28 @@
 
 namespace plica {
 
-enum class Quantity {
-  position,
-  displacement,
-  speed,
-  velocity,
-  deviation,
-  relative_energy_norm,
-  surface_distance,
-  force,
-  volume,
-  area,
-  area_ratio,
-  apical_elongation,
-  pressure,
-  apical_load,
-  inward_displacement,
-  kinetic_energy,
-  time,
-  wall
-};
+struct Monitor;
+struct Moment;
 
-/// Properties of a quantity.
-struct QuantityInfo {
-  enum class Of { node, cell, region };           // items with one value each, reduced by `over`
+/// Quantity that a monitor may read.
+struct Quantity {
+  enum class Of { node, cell, side, region };     // items with one value each, reduced by `over`; side: of a cell
   enum class Axis { none, may_have, must_have };  // a component instead of the norm
   enum class Reference { none, run, surface };    // reference it is compared with
-  Quantity quantity;
   std::string_view name;
   std::string_view unit;  // as in column names; empty for a ratio
   Of of;
-  std::string_view meaning;  // for docs/reference/measures.md, in Markdown
+  std::vector<double> (*values)(const Monitor&, const Moment&);  // empty without a value at this time
+  std::string_view meaning;                                      // for docs/reference/measures.md, in Markdown
   Axis axis = Axis::none;
   Reference reference = Reference::none;
 
   /// Whether `face` selects one side of the cells.
-  [[nodiscard]] bool has_face() const { return of == Of::node || quantity == Quantity::area; }
+  [[nodiscard]] bool has_face() const { return of == Of::node || name == "area"; }
 };
 
-std::span<const QuantityInfo> quantities();
-const QuantityInfo& info_of(Quantity quantity);
-const QuantityInfo* quantity_named(std::string_view name);  // null if unknown
+std::span<const Quantity> quantities();
+const Quantity* quantity_named(std::string_view name);  // null if unknown
 
 enum class Over { mean, max, min, sum, rms };
 
@@ -65,7 +46,7 @@ struct Monitor {
   enum class ReferenceAt { same_time, end };
 
   std::string name;
-  Quantity quantity = Quantity::displacement;
+  const Quantity* quantity = nullptr;
   std::string region = "all";
   Face face = Face::any;    // only nodes of this side; for areas the side (any: apical)
   std::optional<int> axis;  // component 0, 1 or 2; empty: norm

@@ -244,20 +244,20 @@ bool is_closed(const Scenario& scenario) try {
 }
 
 void open_reference(const MonitorInput& input, Monitor& monitor) {
-  const QuantityInfo::Reference kind = info_of(monitor.quantity).reference;
-  if (kind == QuantityInfo::Reference::run) {
+  const Quantity::Reference kind = monitor.quantity->reference;
+  if (kind == Quantity::Reference::run) {
     const auto at = meaning_of(words::reference_times, input.reference_at, Monitor::ReferenceAt::same_time);
     monitor.reference_run = std::make_shared<ReferenceRun>(input.reference);
     if (at == Monitor::ReferenceAt::end) monitor.reference_frame = monitor.reference_run->last_frame();
   }
-  if (kind == QuantityInfo::Reference::surface)
+  if (kind == Quantity::Reference::surface)
     monitor.reference_surface = std::make_shared<SurfaceDistance>(read_surface(input.reference));
 }
 
 Monitor make_monitor(const std::string& name, const MonitorInput& input, const Scenario& scenario) {
   Monitor monitor;
   monitor.name = name;
-  monitor.quantity = quantity_named(input.quantity)->quantity;
+  monitor.quantity = quantity_named(input.quantity);
   monitor.region = input.region;
   monitor.from = input.from;
   monitor.face = meaning_of(words::monitor_faces, input.face, monitor.face);
@@ -270,9 +270,8 @@ Monitor make_monitor(const std::string& name, const MonitorInput& input, const S
 }
 
 bool reads_something(const Monitor& monitor, const Tissue& tissue) {
-  const QuantityInfo::Of of = info_of(monitor.quantity).of;
-  return of == QuantityInfo::Of::node ? !monitored_nodes(monitor, tissue).empty()
-                                      : !monitored_cells(monitor, tissue).empty();
+  return monitor.quantity->of == Quantity::Of::node ? !monitored_nodes(monitor, tissue).empty()
+                                                    : !monitored_cells(monitor, tissue).empty();
 }
 
 StopRule make_stop_rule(const Scenario& scenario) {

@@ -154,7 +154,7 @@ TEST(Simulation, ACriterionEndsItAsPlannedAndAtRestAsEquilibrium) {
   MeasurePlan soon;
   Monitor& clock = soon.monitors.emplace_back();
   clock.name = "clock";
-  clock.quantity = Quantity::time;
+  clock.quantity = quantity_named("time");
   soon.stop.criteria.push_back({.name = "late", .monitor = 0, .above = 0.1, .below = {}});
   const Simulation early = ran(dimpling_sheet(), RunControls{}, {}, soon);
   EXPECT_EQ(early.status(), RunStatus::end_time);

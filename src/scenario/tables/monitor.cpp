@@ -11,14 +11,12 @@ namespace {
 
 std::vector<std::string_view> quantity_names() {
   std::vector<std::string_view> names;
-  for (const QuantityInfo& info : quantities()) names.push_back(info.name);
+  for (const Quantity& info : quantities()) names.push_back(info.name);
   return names;
 }
 
-using Info = QuantityInfo;
-
 /// Checks keys that the quantity requires or does not use.
-void check_keys(const std::string& path, const Info& info, Input& input) {
+void check_keys(const std::string& path, const Quantity& info, Input& input) {
   const auto given = [&](const std::string& key) { return input.place(path + key) != nullptr; };
   const auto refuse = [&](const std::string& key, const std::string& remedy) {
     if (given(key) && input.sound(path + key))
@@ -27,28 +25,29 @@ void check_keys(const std::string& path, const Info& info, Input& input) {
   const auto require = [&](const std::string& key, const std::string& remedy) {
     if (!given(key)) input.report(path + key, "is missing", remedy);
   };
-  if (info.quantity != Quantity::force) refuse(".from", "remove from, which applies to forces only");
-  if (info.axis == Info::Axis::must_have) require(".axis", "set axis to \"x\", \"y\" or \"z\"");
-  if (info.axis == Info::Axis::none)
-    refuse(".axis", info.quantity == Quantity::speed ? "remove axis, or set quantity to \"velocity\"" : "remove axis");
+  if (info.name != "force") refuse(".from", "remove from, which applies to forces only");
+  if (info.axis == Quantity::Axis::must_have) require(".axis", "set axis to \"x\", \"y\" or \"z\"");
+  if (info.axis == Quantity::Axis::none)
+    refuse(".axis", info.name == "speed" ? "remove axis, or set quantity to \"velocity\"" : "remove axis");
   if (!info.has_face()) refuse(".face", "remove face");
-  if (info.of == Info::Of::region) refuse(".over", "remove over, since the quantity has a single value");
-  if (info.reference == Info::Reference::none) refuse(".reference", "remove reference");
-  if (info.reference == Info::Reference::run) require(".reference", "set reference to the results directory of a run");
-  if (info.reference == Info::Reference::surface) require(".reference", "set reference to a mesh file");
-  if (info.reference != Info::Reference::run) refuse(".reference_at", "remove reference_at");
+  if (info.of == Quantity::Of::region) refuse(".over", "remove over, since the quantity has a single value");
+  if (info.reference == Quantity::Reference::none) refuse(".reference", "remove reference");
+  if (info.reference == Quantity::Reference::run)
+    require(".reference", "set reference to the results directory of a run");
+  if (info.reference == Quantity::Reference::surface) require(".reference", "set reference to a mesh file");
+  if (info.reference != Quantity::Reference::run) refuse(".reference_at", "remove reference_at");
 }
 
 void check_monitor(const std::string& path, const MonitorInput& monitor, const Scenario& scenario, Input& input) {
   const std::string address = path + ".quantity";
-  const Info* info = quantity_named(monitor.quantity);
+  const Quantity* info = quantity_named(monitor.quantity);
   if (info == nullptr || !input.sound(path) || !input.sound(address)) return;
   check_keys(path, *info, input);
-  if (info->quantity == Quantity::kinetic_energy && scenario.dynamics.density_kg_per_m3 == 0 &&
+  if (monitor.quantity == "kinetic_energy" && scenario.dynamics.density_kg_per_m3 == 0 &&
       input.sound("dynamics.density_kg_per_m3"))
     input.report(address, "kinetic energy requires a density above 0",
                  "set dynamics.density_kg_per_m3, or set quantity to \"speed\"");
-  if (info->quantity == Quantity::pressure && method_of(scenario.volume) == VolumeMethod::none &&
+  if (monitor.quantity == "pressure" && method_of(scenario.volume) == VolumeMethod::none &&
       input.sound("volume.method"))
     input.report(address, "cell pressure requires conserved cell volumes", "set volume.method to \"coupled\"");
 }
@@ -72,20 +71,18 @@ void check_criterion(const std::string& name, const CriterionInput& criterion, c
     return input.report(path + ".monitor", fmt::format("monitor \"{}\" does not exist", criterion.monitor),
                         scenario.monitors.empty() ? "define [monitor." + criterion.monitor + "]"
                                                   : did_you_mean(criterion.monitor, keys_of(scenario.monitors)));
-  const Info* info = quantity_named(monitor->second.quantity);
-  if (info != nullptr && info->of == Info::Of::region && !criterion.over.empty())
+  const Quantity* info = quantity_named(monitor->second.quantity);
+  if (info != nullptr && info->of == Quantity::Of::region && !criterion.over.empty())
     input.report(path + ".over", fmt::format("monitor \"{}\" has a single value", criterion.monitor), "remove over");
 }
 
 void check_expected_monitors(const Scenario& scenario, Input& input) {
   std::vector<std::string> columns;
   for (const auto& [name, monitor] : scenario.monitors) {
-    if (const Info* info = quantity_named(monitor.quantity)) {
-      Monitor known;
-      known.name = name;
-      known.quantity = info->quantity;
-      columns.push_back(known.column());
-    }
+    Monitor known;
+    known.name = name;
+    known.quantity = quantity_named(monitor.quantity);
+    if (known.quantity) columns.push_back(known.column());
   }
   for (const auto& [name, expected] : scenario.expect)
     if (name.find('.') != std::string::npos && std::ranges::find(columns, name) == columns.end() &&
