@@ -17,6 +17,7 @@ struct Subject {
   bool projects = false;    // volumes are projected
 };
 
+inline bool always(const Subject&) { return true; }
 inline bool of_embryo(const Subject& subject) { return subject.is_embryo; }
 
 struct MeasureSet {
@@ -24,7 +25,7 @@ struct MeasureSet {
   std::string_view needs;                         // of the tissue; for messages and docs/reference/measures.md
   std::function<std::any(const Subject&)> begin;  // what is kept over the run; empty without what it needs
   std::vector<Column> columns;
-  std::function<bool(const Subject&)> is_usual = {};  // whether measured by default; empty: yes
+  std::function<bool(const Subject&)> is_usual = always;  // whether measured by default
   std::function<void(std::any&, const Tissue&, const Division&)> follow_division = {};
   std::string_view with = {};  // set that is measured along with it
 };
@@ -63,7 +64,7 @@ Column::OfStep part_of(std::optional<Value> (*compute)(const ColumnInput&), Part
 
 /// Set that keeps no places of cells, which divisions would change.
 inline MeasureSet set_of(std::string_view name, std::string_view needs, std::function<std::any(const Subject&)> begin,
-                         std::vector<Column> columns, std::function<bool(const Subject&)> is_usual = {}) {
+                         std::vector<Column> columns, std::function<bool(const Subject&)> is_usual = always) {
   return {name, needs, std::move(begin), std::move(columns), std::move(is_usual)};
 }
 

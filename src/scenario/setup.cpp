@@ -296,7 +296,7 @@ void begin_sets(const Scenario& scenario, const Model& model, KeptBySet& kept, s
                         method_of(scenario.volume) == VolumeMethod::projection};
   const auto is_given = [&](std::string_view name) { return std::ranges::count(scenario.measure.sets, name) > 0; };
   for (const MeasureSet& set : measure_sets()) {
-    const bool is_usual = is_given("automatic") && (!set.is_usual || set.is_usual(subject));
+    const bool is_usual = is_given("automatic") && set.is_usual(subject);
     if ((is_given(set.name) || is_usual) && !begin(set, subject, kept) && is_given(set.name))
       errors.push_back(diagnostic_at(scenario, "measure.sets",
                                      fmt::format("\"{}\" has nothing to measure without {}", set.name, set.needs),

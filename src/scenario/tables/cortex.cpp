@@ -60,14 +60,10 @@ void check_shape_activation(const std::string& table, const CortexInput& cortex,
     report(".follow", "is not used without tension_mN_per_m", "remove it, or set tension_mN_per_m");
 }
 
-void check_cortices(Scenario& scenario, Input& input) {
-  for (auto& [name, it] : scenario.cortices) {
-    const std::string table = "cortex." + name;
-    check_acting(table, it, scenario.time, input);
-    check_program(table, it.stiffness_program, input, "stiffness_program");
-    check_effect(table, it, input);
-    check_shape_activation(table, it, input);
-  }
+void check_cortex(const std::string& table, CortexInput& cortex, const Scenario&, Input& input) {
+  check_program(table, cortex.stiffness_program, input, "stiffness_program");
+  check_effect(table, cortex, input);
+  check_shape_activation(table, cortex, input);
 }
 
 ShapeActivationRule make_shape_activation(const CortexInput& input) {
@@ -161,8 +157,7 @@ ScenarioTable cortex_table() {
                    });
   add_pattern(info.rows, acting(row));
   info.build = build;
-  list_acting(info, &Scenario::cortices, describe);
-  info.rules = check_cortices;
+  list_acting(info, &Scenario::cortices, describe, check_cortex);
   return info;
 }
 

@@ -37,31 +37,26 @@ void check_elasticity(Scenario& scenario, Input& input) {
                  "set it to 0 and use elasticity.relaxation_min, or set elasticity.model to \"corotational\"");
 }
 
-void check_region_elasticities(Scenario& scenario, Input& input) {
+void check_region_elasticity(const std::string& table, R& it, const Scenario& scenario, Input& input) {
+  if (!input.sound(table) || !input.sound("elasticity.model")) return;
   const ElasticModel model = model_of(scenario.elasticity);
-  for (auto& [name, it] : scenario.region_elasticities) {
-    const std::string table = "elasticity." + name;
-    if (!input.sound(table) || !input.sound("elasticity.model")) continue;
-    const auto sound = [&](const std::string& key) { return input.sound(table + key); };
-    check_acting(table, it, scenario.time, input);
-    if (model == ElasticModel::shape_memory)
-      input.report(table, "model \"shape-memory\" does not support regions",
-                   "remove the table, or set elasticity.model to \"corotational\" or \"neo-hookean\"");
-    else if (!it.young_modulus_Pa && !it.poisson_ratio && !it.relaxation_s && it.profile.shape.empty() &&
-             it.variation.spread == 0 && sound(".young_modulus_Pa") && sound(".poisson_ratio") &&
-             sound(".relaxation_s") && sound(".profile") && sound(".profile.shape") && sound(".variation.spread"))
-      input.report(table, "has no effect", "set young_modulus_Pa, poisson_ratio, relaxation_min, profile or variation");
-    else if (it.relaxation_s && model != ElasticModel::neo_hookean)
-      input.report(table + ".relaxation_s", fmt::format("is not used with model \"{}\"", scenario.elasticity.model),
-                   "remove it, or set elasticity.model to \"neo-hookean\"");
-    if (it.poisson_ratio && *it.poisson_ratio < 0 && model == ElasticModel::neo_hookean && sound(".poisson_ratio"))
-      input.report(table + ".poisson_ratio",
-                   fmt::format("{} is below 0, the minimum with model \"neo-hookean\"", *it.poisson_ratio),
-                   "set poisson_ratio to a number >= 0, or model to \"corotational\"");
-    if (it.height_percent && !scenario.divisions.empty() && sound(".height_percent"))
-      input.report(table + ".height_percent", "cells with layers cannot divide",
-                   "remove height_percent, or [division]");
-  }
+  const auto sound = [&](const std::string& key) { return input.sound(table + key); };
+  if (model == ElasticModel::shape_memory)
+    input.report(table, "model \"shape-memory\" does not support regions",
+                 "remove the table, or set elasticity.model to \"corotational\" or \"neo-hookean\"");
+  else if (!it.young_modulus_Pa && !it.poisson_ratio && !it.relaxation_s && it.profile.shape.empty() &&
+           it.variation.spread == 0 && sound(".young_modulus_Pa") && sound(".poisson_ratio") &&
+           sound(".relaxation_s") && sound(".profile") && sound(".profile.shape") && sound(".variation.spread"))
+    input.report(table, "has no effect", "set young_modulus_Pa, poisson_ratio, relaxation_min, profile or variation");
+  else if (it.relaxation_s && model != ElasticModel::neo_hookean)
+    input.report(table + ".relaxation_s", fmt::format("is not used with model \"{}\"", scenario.elasticity.model),
+                 "remove it, or set elasticity.model to \"neo-hookean\"");
+  if (it.poisson_ratio && *it.poisson_ratio < 0 && model == ElasticModel::neo_hookean && sound(".poisson_ratio"))
+    input.report(table + ".poisson_ratio",
+                 fmt::format("{} is below 0, the minimum with model \"neo-hookean\"", *it.poisson_ratio),
+                 "set poisson_ratio to a number >= 0, or model to \"corotational\"");
+  if (it.height_percent && !scenario.divisions.empty() && sound(".height_percent"))
+    input.report(table + ".height_percent", "cells with layers cannot divide", "remove height_percent, or [division]");
 }
 
 Vec3 mean(std::span<const NodeId> nodes, const Vectors& positions) {
@@ -259,8 +254,7 @@ ScenarioTable region_elasticity_table() {
   };
   add_strengths(info.rows, acting(row));
   info.check = check_regions;
-  list_acting(info, &Scenario::region_elasticities, describe);
-  info.rules = check_region_elasticities;
+  list_acting(info, &Scenario::region_elasticities, describe, check_region_elasticity);
   return info;
 }
 

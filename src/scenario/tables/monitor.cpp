@@ -38,7 +38,7 @@ void check_keys(const std::string& path, const Quantity& info, Input& input) {
   if (info.reference != Quantity::Reference::run) refuse(".reference_at", "remove reference_at");
 }
 
-void check_monitor(const std::string& path, const MonitorInput& monitor, const Scenario& scenario, Input& input) {
+void check_monitor(const std::string& path, MonitorInput& monitor, const Scenario& scenario, Input& input) {
   const std::string address = path + ".quantity";
   const Quantity* info = quantity_named(monitor.quantity);
   if (info == nullptr || !input.sound(path) || !input.sound(address)) return;
@@ -52,10 +52,9 @@ void check_monitor(const std::string& path, const MonitorInput& monitor, const S
     input.report(address, "cell pressure requires conserved cell volumes", "set volume.method to \"coupled\"");
 }
 
-void check_criterion(const std::string& name, const CriterionInput& criterion, const Scenario& scenario, Input& input) {
-  const std::string path = "stop." + name;
+void check_criterion(const std::string& path, CriterionInput& criterion, const Scenario& scenario, Input& input) {
   if (!input.sound(path)) return;
-  if (name == "equilibrium")
+  if (path == "stop.equilibrium")
     input.report(path, "\"equilibrium\" is a predefined criterion",
                  "rename the table, or set stop.equilibrium_speed_um_per_min");
   const bool bounds_read = input.sound(path + ".above") && input.sound(path + ".below");
@@ -127,9 +126,7 @@ ScenarioTable criterion_table() {
       row("over", &K::over, one_of(words::criterion_overs),
           "Met if any, or all, of the monitor's nodes or cells pass the bound; default: its single value."),
   };
-  info.rules = [](Scenario& scenario, Input& input) {
-    for (const auto& [name, criterion] : scenario.criteria) check_criterion(name, criterion, scenario, input);
-  };
+  check_each(info, &Scenario::criteria, check_criterion);
   return info;
 }
 
@@ -166,9 +163,7 @@ ScenarioTable monitor_table() {
       take("monitor." + name + ".from", it.from);
     }
   };
-  info.rules = [](Scenario& scenario, Input& input) {
-    for (const auto& [name, monitor] : scenario.monitors) check_monitor("monitor." + name, monitor, scenario, input);
-  };
+  check_each(info, &Scenario::monitors, check_monitor);
   return info;
 }
 

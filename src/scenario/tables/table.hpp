@@ -142,9 +142,20 @@ void check_program(const std::string& table, const ProgramInput& program, Input&
 /// origin and phase.
 void check_acting(const std::string& table, ActingInput& acting, const TimeInput& time, Input& input);
 
-/// Lists the tables of one kind that act, and checks what all that act have. `describe` fills what depends on the kind.
+/// Checks each table of one kind by `check`, where `path` is its address ("monitor.NAME").
 template <class Table>
-void list_acting(ScenarioTable& info, Named<Table> tables, void (*describe)(const Table&, const Scenario&, Acting&)) {
+void check_each(ScenarioTable& info, Named<Table> tables,
+                void (*check)(const std::string& path, Table&, const Scenario&, Input&)) {
+  info.rules = [=, stem = info.stem()](Scenario& scenario, Input& input) {
+    for (auto& [name, table] : scenario.*tables) check(fmt::format("{}.{}", stem, name), table, scenario, input);
+  };
+}
+
+/// Lists the tables of one kind that act, and checks what all that act have, then what `check` adds for the kind.
+/// `describe` fills what depends on the kind.
+template <class Table>
+void list_acting(ScenarioTable& info, Named<Table> tables, void (*describe)(const Table&, const Scenario&, Acting&),
+                 void (*check)(const std::string& path, Table&, const Scenario&, Input&) = nullptr) {
   info.acting = [=, stem = info.stem()](const Scenario& scenario, std::vector<Acting>& all) {
     for (const auto& [name, table] : scenario.*tables) {
       all.push_back({fmt::format("{}.{}", stem, name), table});
@@ -152,8 +163,11 @@ void list_acting(ScenarioTable& info, Named<Table> tables, void (*describe)(cons
     }
   };
   info.rules = [=, stem = info.stem()](Scenario& scenario, Input& input) {
-    for (auto& [name, table] : scenario.*tables)
-      check_acting(fmt::format("{}.{}", stem, name), table, scenario.time, input);
+    for (auto& [name, table] : scenario.*tables) {
+      const std::string path = fmt::format("{}.{}", stem, name);
+      check_acting(path, table, scenario.time, input);
+      if (check) check(path, table, scenario, input);
+    }
   };
 }
 
