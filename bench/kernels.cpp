@@ -71,7 +71,8 @@ struct Measured {
   Kernels kernels;
   int threads;
 
-  Corotational elasticity{scene.tissue, ElasticModuli::from_young(1, 0.45), 0, {}, kernels};
+  Corotational elasticity{scene.tissue, std::vector(scene.tissue.elements.size(), ElasticModuli::from_young(1, 0.45)),
+                          0, kernels};
   CellVolumes volumes{scene.tissue, kernels};
   Step step{scene.positions, scene.tissue.rest_positions, {}, 0.05, 0.05};
   Step warped{scene.positions, scene.tissue.rest_positions, {}, 0.05, 0.05, true};

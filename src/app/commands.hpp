@@ -33,7 +33,6 @@ inline void catch_interruptions() {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int caught) { caught_signal = caught; });
 }
 
-/// Whether a signal has arrived.
 inline bool interrupted() { return caught_signal != 0; }
 
 /// Whether a signal has arrived and `seconds` have passed since the first call after it. Called often, it gives work
@@ -46,7 +45,6 @@ inline bool interrupted_for(double seconds) {
   return std::chrono::duration<double>(Clock::now() - *seen).count() >= seconds;
 }
 
-/// Exit status for the last signal.
 inline ExitStatus interrupted_status() { return caught_signal == SIGTERM ? exit_terminated : exit_interrupted; }
 
 }  // namespace plica

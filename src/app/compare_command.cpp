@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "app/options.hpp"
-#include "core/errors.hpp"
 #include "study/compare.hpp"
 
 namespace plica {

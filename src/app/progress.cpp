@@ -8,7 +8,6 @@
 #include <csignal>
 #include <cstdio>
 #include <optional>
-#include <string>
 #include <string_view>
 
 #include "core/units.hpp"

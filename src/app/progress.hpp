@@ -26,7 +26,6 @@ class LiveLine {
   Clock::time_point start_ = Clock::now(), last_ = start_;
 };
 
-/// Progress of one run.
 class Progress {
  public:
   Progress(const RunControls& controls, bool quiet) : controls_(controls), line_(quiet) {}

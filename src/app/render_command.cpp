@@ -106,7 +106,6 @@ std::string quoted(const std::string& name) {
   return text + "'";
 }
 
-/// Command that makes a movie of the pictures.
 std::string movie_command(const std::string& stem, std::size_t count, bool even) {
   std::string pattern;  // ffmpeg's: % is doubled
   for (const char letter : stem) pattern += letter == '%' ? "%%" : std::string(1, letter);

@@ -49,7 +49,6 @@ void write_table(const Study& study, const StudyDirectory& directory) {
   if (can_report()) write_study_report(directory.path());
 }
 
-// Print the result; return the exit status.
 int ended(const Study& study, const StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
   write_table(study, directory);
   if (!options.quiet) {
@@ -122,7 +121,6 @@ int run(const StudyOptions& options) {
                                    : run_here(study, directory, options, start);
 }
 
-// Run one task of a job array.
 int work(const std::string& out, int task) {
   const ThreadCount one(1);
   auto [directory, study] = StudyDirectory::open_to_run(out);

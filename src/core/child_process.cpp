@@ -15,7 +15,6 @@
 #include <fstream>
 #include <limits>
 #include <mutex>
-#include <string_view>
 #include <system_error>
 
 #include "core/errors.hpp"

@@ -19,7 +19,6 @@ class ChildProcess {
   explicit ChildProcess(const std::function<int(int end)>& work);
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
-  /// Terminates the child.
   ~ChildProcess();
 
   [[nodiscard]] pid_t id() const { return process_; }

@@ -9,7 +9,6 @@
 
 namespace plica {
 
-/// Largest file that `read_file` accepts.
 inline constexpr std::uintmax_t largest_file_read_bytes = std::uintmax_t{256} << 20;
 
 /// Read a file. Throws FileError if it is unreadable, a directory, or larger than `most_bytes`.

@@ -6,7 +6,6 @@
 #include "core/errors.hpp"
 #include "experiments/experiments.hpp"
 #include "scenario/schema.hpp"
-#include "scenario/suggest.hpp"
 #include "study/design.hpp"
 #include "study/quiet_run.hpp"
 

@@ -62,7 +62,6 @@ std::optional<double> compared(const Outcome& outcome, std::optional<double> val
 /// miss, or a hit with `hit_if_none`; a missing compared value is undecided.
 Judgement judge(const Outcome& outcome, std::optional<double> value, std::optional<double> compared_value = {});
 
-/// Closed interval.
 struct Interval {
   double low = 0, high = 1;
 };

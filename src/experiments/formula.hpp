@@ -19,7 +19,6 @@
 
 namespace plica {
 
-/// Numbers of a run.
 struct RunNumbers {
   nlohmann::ordered_json summary;  // null if missing
   Series series;

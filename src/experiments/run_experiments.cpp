@@ -20,7 +20,6 @@
 #include "show/report.hpp"
 #include "study/csv_fields.hpp"
 #include "study/quiet_run.hpp"
-#include "study/worker_pool.hpp"
 
 namespace plica {
 namespace fs = std::filesystem;

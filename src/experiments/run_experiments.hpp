@@ -21,7 +21,6 @@
 
 namespace plica {
 
-/// Result of a run.
 struct DrawResult {
   RunNumbers numbers;              // series: only if a formula uses one
   std::string status = "not_run";  // of its summary; refused: invalid scenario; crashed: its process ended twice
@@ -32,7 +31,6 @@ struct DrawResult {
   [[nodiscard]] bool is_solved() const { return status == "equilibrium" || status == "end_time"; }
 };
 
-/// Outcome with one draw.
 struct DrawOutcome {
   std::optional<double> value, compared_value;  // of the quantity, in this experiment and in the other
   std::optional<double> judged;                 // number that the criterion applies to

@@ -23,7 +23,6 @@ double mean_speed(const Tissue& tissue, const MonitoredCells& cells, const Vecto
 /// Mean displacement of corner nodes from the reference state, um: "displacement of the nodes" of the paper.
 double mean_node_displacement(const Tissue& tissue, const MonitoredCells& cells, const Vectors& positions);
 
-/// Mean of apical area / reference area over cells.
 double mean_apical_area_ratio(const Tissue& tissue, const MonitoredCells& cells, std::span<const Vec3> positions);
 
 /// Smallest apical area / reference area of all cells; empty without apical faces.

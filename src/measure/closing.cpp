@@ -21,20 +21,9 @@ namespace {
 
 constexpr double knee_up_to_um = 20;
 
-struct Interval {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
-  void take(double value) { low = std::min(low, value), high = std::max(high, value); }
-};
-
-Interval length_of(const Tissue& tissue) {
-  Interval length;
-  for (const Vec3& x : tissue.rest_positions) length.take(x.x());
-  return length;
-}
-
 // Length of the union of intervals.
-double covered(std::vector<Interval> intervals) {
-  std::ranges::sort(intervals, {}, &Interval::low);
+double covered(std::vector<Extent> intervals) {
+  std::ranges::sort(intervals, {}, &Extent::low);
   double sum = 0, end = -std::numeric_limits<double>::infinity();
   for (const auto& [low, high] : intervals) {
     sum += std::max(0.0, high - std::max(low, end));
@@ -47,7 +36,7 @@ double covered(std::vector<Interval> intervals) {
 
 std::optional<ContactState> contact_state(const Model& model, const State& state) {
   std::optional<ContactState> result;
-  std::vector<Interval> closed;
+  std::vector<Extent> closed;
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
     const auto* law = dynamic_cast<const SelfContact*>(model.laws[l].get());
     if (law == nullptr) continue;
@@ -60,7 +49,7 @@ std::optional<ContactState> contact_state(const Model& model, const State& state
       if (law->side() != CellSide::apical) continue;
       const Vectors& at_rest = model.tissue.rest_positions;
       if (pair.p.at(at_rest).y() * pair.q.at(at_rest).y() >= 0) continue;  // both on one side
-      Interval reach;
+      Extent reach;
       for (const SurfacePlace* place : {&pair.p, &pair.q})
         for (const NodeId node : place->all_nodes()) reach.take(state.positions[node.index()].x());
       closed.push_back(reach);
@@ -68,7 +57,7 @@ std::optional<ContactState> contact_state(const Model& model, const State& state
     }
   }
   if (!closed.empty()) {
-    const Interval length = length_of(model.tissue);
+    const Extent length = extent_along(model.tissue);
     result->closed_length_ratio = covered(std::move(closed)) / (length.high - length.low);
   }
   return result;
@@ -150,7 +139,7 @@ std::optional<double> flank_section_area(const Tissue& tissue, std::span<const V
 std::optional<double> flank_volume(const Tissue& tissue, std::span<const Vec3> positions) {
   if (!tissue.outer_shape) return std::nullopt;
   constexpr double from = flank_from, to = flank_to;
-  const Interval length = length_of(tissue);
+  const Extent length = extent_along(tissue);
   const double quarter = (length.high - length.low) / 4, middle = (length.high + length.low) / 2;
   double sum = 0;
   for (const Cell& cell : tissue.cells) {

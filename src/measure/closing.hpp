@@ -20,7 +20,6 @@ struct ContactState {
 /// Measure self-contact; empty without [self_contact].
 std::optional<ContactState> contact_state(const Model& model, const State& state);
 
-/// Enclosed volume of [enclosed].
 struct Enclosed {
   double volume_ratio;  // relative to its target
   double pressure_kPa;

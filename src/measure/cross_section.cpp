@@ -17,12 +17,9 @@ constexpr double nothing_um = 1e-6;  // below this: rounding error
 std::vector<std::pair<double, CellId>> ring_at(const Tissue& tissue, double x, const Vec3& outward) {
   std::map<CellId, double> angles;
   for (const Facet& facet : tissue.apical_facets) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const NodeId node : facet.nodes) {
-      low = std::min(low, tissue.rest_positions[node.index()].x());
-      high = std::max(high, tissue.rest_positions[node.index()].x());
-    }
-    if (low > x || high <= x) continue;
+    Extent extent;
+    for (const NodeId node : facet.nodes) extent.take(tissue.rest_positions[node.index()].x());
+    if (extent.low > x || extent.high <= x) continue;
     Vec3 centre = mean_apical(tissue.cells[facet.cell.index()], tissue.rest_positions);
     if (std::abs(centre.y()) < nothing_um) centre.y() = 0;  // a cell opposite the midline counts as right
     angles[facet.cell] = std::atan2(centre.y(), centre.dot(outward));
@@ -111,8 +108,7 @@ std::vector<SurfacePoint> cut_apical_surface(const Tissue& tissue, std::span<con
 }
 
 std::vector<SectionCell> section_cells(const Tissue& tissue, const Vec3& outward) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Vec3& x : tissue.rest_positions) low = std::min(low, x.x()), high = std::max(high, x.x());
+  const auto [low, high] = extent_along(tissue);
   std::vector<SectionCell> cells;
   std::vector<std::vector<std::pair<double, CellId>>> known;
   for (const int percent : {50, 25, 75}) {

@@ -28,7 +28,6 @@ struct SurfacePoint : MaterialPoint {
 std::vector<SurfacePoint> cut_apical_surface(const Tissue& tissue, std::span<const Vec3> positions, int axis,
                                              const std::vector<bool>& wanted);
 
-/// Cell of a cross-section.
 struct SectionCell {
   CellId cell;
   int place_percent = 50;  // reference position of the section, % of the length from the anterior end

@@ -19,7 +19,6 @@ namespace {
 constexpr int axis_x = 0, axis_y = 1;
 constexpr double same_place_um = 1e-6;  // tolerance for mirror images in the reference state
 
-// Facets of the given cells.
 std::vector<bool> facets_of(const Tissue& tissue, const CellSet& cells) {
   std::vector<bool> wanted;
   for (const Facet& facet : tissue.apical_facets) wanted.push_back(cells[facet.cell.index()]);

@@ -18,7 +18,6 @@ namespace plica {
 struct Monitor;
 struct Moment;
 
-/// Quantity that a monitor may read.
 struct Quantity {
   enum class Of { node, cell, side, region };     // items with one value each, reduced by `over`; side: of a cell
   enum class Axis { none, may_have, must_have };  // a component instead of the norm
@@ -62,7 +61,6 @@ struct Monitor {
   [[nodiscard]] std::string column() const;
 };
 
-/// State of a run at one time.
 struct Moment {
   const Model& model;
   const State& state;

@@ -58,7 +58,6 @@ class Observer {
   /// Measure the end of a step; null: the reference state, before the first.
   [[nodiscard]] Observation observe(const Moment& moment, const AcceptedStep* step) const;
   [[nodiscard]] const std::vector<Monitor>& monitors() const { return plan_.monitors; }
-  /// Columns that are measured.
   [[nodiscard]] const ColumnList& columns() const { return columns_; }
   /// What a set keeps over the run; null if it is not measured.
   template <class Kept>
@@ -72,7 +71,6 @@ class Observer {
     std::erase_if(columns_, [&](const Column* column) { return which(*column); });
   }
 
-  /// Update after divisions.
   void follow_division(const Tissue& tissue, const Division& division);
 
  private:

@@ -68,7 +68,6 @@ class Constraint {
   /// Return the constraint for the tissue after a division, with nodes at `positions`.
   [[nodiscard]] virtual std::unique_ptr<Constraint> after_division(const Tissue& tissue, const Division& division,
                                                                    std::span<const Vec3> positions) const = 0;
-  /// Return the multipliers after a division.
   [[nodiscard]] virtual std::vector<double> multipliers_after_division(std::span<const double> multipliers,
                                                                        const Division& /*division*/) const {
     return {multipliers.begin(), multipliers.end()};

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -58,7 +57,6 @@ struct Model {
   }
   [[nodiscard]] std::size_t constraint_count() const { return 1 + constraints.size(); }
 
-  /// Return the number of multipliers of all constraints.
   [[nodiscard]] std::size_t multiplier_count() const;
 
   /// Return nodal masses, g; empty without inertia.
@@ -79,7 +77,6 @@ struct Model {
 /// the existing labels.
 std::size_t place_of_law(const Model& model, const std::string& label, bool acting = false);
 
-/// Return the model at the end of a step.
 inline const Model& at_end(const Model& model, const Step& step) { return step.grown ? *step.grown : model; }
 
 /// Call body(law at the end of the step, step as seen by that law) for every law.

@@ -31,7 +31,6 @@ class Obstacle {
   [[nodiscard]] virtual std::span<const NodeId> nodes() const = 0;
   [[nodiscard]] virtual Gap gap(const Vec3& position) const = 0;
 
-  /// Return the obstacle for the tissue after a division.
   [[nodiscard]] virtual std::unique_ptr<Obstacle> after_division(const Tissue& tissue,
                                                                  const Division& division) const = 0;
 };

@@ -44,8 +44,7 @@ FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellPattern pat
     if (!pattern_.cells[facet.cell.index()]) continue;
     const double own = pressure * pattern_.strengths[facet.cell.index()];
     // The consistent load of a uniform pressure on a bilinear facet: integral of N_i n dA, 2 x 2 Gauss points.
-    std::array<Vec3, 4> x;
-    for (int i = 0; i < 4; ++i) x[i] = tissue.rest_positions[facet.nodes[i].index()];
+    const std::array<Vec3, 4> x = gather(tissue.rest_positions, facet);
     const double g = 1 / std::sqrt(3.0);
     for (const double s : {-g, g})
       for (const double t : {-g, g}) {

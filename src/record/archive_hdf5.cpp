@@ -12,7 +12,6 @@
 namespace plica {
 namespace {
 
-// RAII handle of HDF5.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t), const std::string& what) : id_(id), close_(close) {

@@ -133,7 +133,6 @@ void put_elements(const MeshElements& mesh, VtkText& vtu) {
   vtu.line(3, "</Cells>");
 }
 
-/// Write field data.
 void put_field_data(const FramePolygons* polygons, const std::vector<std::pair<std::string, std::vector<int>>>& lists,
                     std::optional<double> time_s, VtkText& vtk) {
   if (!time_s && polygons == nullptr && lists.empty()) return;

@@ -42,7 +42,6 @@ struct MeshArrays {
 /// a wall have.
 FramePolygons polygons_of(const Tissue& tissue);
 
-/// Polygonal surface with data.
 struct SurfaceMesh {
   Vectors points;                                                    // um
   std::vector<int> ends;                                             // polygons: end of its corners in `corners`

@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "core/errors.hpp"
-#include "core/files.hpp"
 #include "core/numbers.hpp"
 #include "mechanics/obstacles/vitelline.hpp"
 #include "scenario/load.hpp"

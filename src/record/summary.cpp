@@ -68,7 +68,6 @@ Json warnings_of(const Scenario& scenario, const Simulation& simulation) {
   return texts;
 }
 
-// Last value of a monitor.
 std::optional<double> last_value(const std::vector<Observation>& rows, std::size_t monitor) {
   std::optional<double> value;
   for (const Observation& row : rows)

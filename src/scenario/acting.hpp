@@ -14,7 +14,6 @@
 
 namespace plica {
 
-/// One table that acts.
 struct Acting {
   /// Force that remedies reduce.
   struct Force {
@@ -60,10 +59,8 @@ CellPattern make_ablated_pattern(const Scenario& scenario, const std::string& ta
 
 inline Program make_program(const ProgramInput& input) { return {input.time_s, input.activity}; }
 
-/// Longest time step that resolves the pulses (s).
 inline double longest_step_of_pulses_s(const PulseInput& pulse) { return *pulse.period_s / (12 * (1 + pulse.spread)); }
 
-/// Elastic properties of one element.
 struct ElasticMaterial {
   double factor = 1;  // on the Young's modulus of [elasticity]
   double poisson_ratio = 0;

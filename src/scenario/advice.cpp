@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <set>
-#include <string>
 
 #include "core/units.hpp"
 #include "measure/bending_error.hpp"
@@ -18,7 +16,6 @@
 #include "scenario/check_tissue.hpp"
 #include "scenario/embryo_axes.hpp"
 #include "scenario/schema.hpp"
-#include "scenario/setup.hpp"
 #include "scenario/words.hpp"
 #include "tissue/faces.hpp"
 #include "tissue/mesh_quality.hpp"
@@ -393,7 +390,6 @@ void advise_on_furrow(const Scenario& scenario, const Tissue& tissue, Messages& 
                is_furrow ? "furrow depth, furrow lips and VML have" : "the fold depth has");
 }
 
-// Notes on the mesh.
 void advise_on_mesh(const Scenario& scenario, const Tissue& tissue, Messages& out) {
   const MeshQuality quality = mesh_quality(tissue, tissue.rest_positions);
   out.note("{} cells, {} elements, {} nodes; cell volume {:.0f} to {:.0f} um3, apical area {:.0f} to {:.0f} um2",

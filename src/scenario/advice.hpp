@@ -23,7 +23,6 @@ struct Remedy {
   std::string effect;
 };
 
-/// Time and kind of a failure.
 struct Failure {
   StepReport::Status status;
   double time_s = 0;

@@ -14,7 +14,6 @@
 namespace plica {
 namespace {
 
-/// Problem with a value, or nothing.
 using Problem = std::optional<std::string>;
 
 std::string in_toml(const toml::node& node) {

@@ -208,7 +208,6 @@ struct EnclosedInput {
   std::optional<double> bulk_modulus_Pa;  // compliant
 };
 
-/// Surfaces with self-contact.
 enum class ContactSurface { none, apical, basal, both };
 
 struct SelfContactInput {

@@ -105,7 +105,6 @@ std::span<const InnerTables> inner_tables();              // in the order of the
 const KeyRow* row_of_key(std::string_view dotted);        // "contraction.apical.region"; null if unknown
 std::span<const std::string_view> expectation_names();    // names allowed in [expect]
 
-/// Resets the row's field of `scenario` to its default.
 void reset_to_default(const KeyRow& row, Scenario& scenario, const std::string& name);
 
 }  // namespace plica

@@ -189,7 +189,6 @@ void hold_rim(Model& model) {
         for (int axis = 0; axis < 3; ++axis) hold_node(node, axis, model);
 }
 
-/// Keeps nodes of a mirror plane on it.
 void hold_mirror_planes(Model& model) {
   for (std::size_t n = 0; n < model.held.size(); ++n)
     for (int axis = 0; axis < 3; ++axis)
@@ -211,7 +210,6 @@ void check_forces_at_rest(const Scenario& scenario, const Model& model) {
            "reduce stiffness, pre-tension or pressure");
 }
 
-/// Adds all force laws, constraints and obstacles of a scenario.
 void add_mechanics(const Scenario& scenario, const Origin& origin, Model& model) {
   const Tissue& tissue = model.tissue;
   model.volumes.hold(method_of(scenario.volume) == VolumeMethod::coupled);

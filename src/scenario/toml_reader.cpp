@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdint>
 #include <sstream>
-#include <vector>
 
 #include "scenario/print.hpp"
 #include "scenario/suggest.hpp"

@@ -26,7 +26,6 @@ std::string trimmed(const std::string& text);
 /// the library's own description.
 Diagnostic syntax_diagnostic(const std::string& file, const std::string& text, const toml::parse_error& error);
 
-/// Largest size of a scenario file (bytes).
 inline constexpr std::uintmax_t largest_scenario_bytes = std::uintmax_t{4} << 20;
 
 /// Largest number of scenarios in a chain of bases.

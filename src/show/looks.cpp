@@ -6,7 +6,7 @@
 #include "measure/cell_columns.hpp"
 #include "show/boundary_surface.hpp"
 #include "tissue/faces.hpp"
-#include "tissue/hexahedron.hpp"
+#include "tissue/mesh_faces.hpp"
 
 namespace plica {
 namespace {
@@ -183,11 +183,7 @@ const std::vector<View>& views() {
 std::vector<View> views_of(const Frame& rest) {
   std::vector<View> views = plica::views();
   Facing facing;
-  for (const auto& element : rest.elements) {
-    std::array<Vec3, 4> apex;
-    for (int i = 0; i < 4; ++i) apex[i] = rest.positions[element[hex_faces[apical_face][i]].index()];
-    facing.add(apex);
-  }
+  for (const auto& element : rest.elements) facing.add(gather(rest.positions, face_nodes(element, apical_face)));
   if (!facing.is_one_way()) return views;
   // x to the right, projected across the viewing direction; if parallel to it, y.
   const auto apical = std::ranges::find(views, "apical", &View::name);

@@ -37,7 +37,6 @@ enum class ScaleKind {
   steps       // integers
 };
 
-/// Quantity for colouring the embryo.
 struct ColourField {
   std::string name;   // as in `--color`
   std::string label;  // "pressure"

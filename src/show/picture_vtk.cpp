@@ -325,7 +325,6 @@ std::string read_number(int end) {
   return line;
 }
 
-// Last line of the messages of Xvfb.
 std::string last_line(std::FILE* messages) {
   std::string text(1 << 14, '\0');
   std::rewind(messages);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "core/errors.hpp"
-#include "core/files.hpp"
 #include "core/version.hpp"
 #include "record/archive.hpp"
 #include "record/results.hpp"

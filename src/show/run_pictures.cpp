@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/errors.hpp"
 #include "record/results.hpp"
@@ -124,22 +123,19 @@ void RunPictures::add_rows(const Frame& rest, const PictureOptions& options, con
 
 // Find the space that the rows need, and the smallest and largest value of the field.
 std::pair<double, double> RunPictures::look_through() {
-  double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
+  Extent values;
   for (std::size_t i = 0; i < times_s_.size(); ++i) {
     Frame frame = run_.frame(i);
     centre(frame);
-    for (const double value : field_values(frame, common_.field)) {
-      if (!std::isfinite(value)) continue;
-      smallest = std::min(smallest, value);
-      largest = std::max(largest, value);
-    }
+    for (const double value : field_values(frame, common_.field))
+      if (std::isfinite(value)) values.take(value);
     for (PictureRow& row : common_.rows) {
       const auto half = half_size_um(frame.positions, row.view);
       for (int k = 0; k < 2; ++k) row.half_size_um[k] = std::max(row.half_size_um[k], half[k]);
     }
     farthest_um_.push_back(farthest_displacement_um(frame));
   }
-  return {smallest, largest};
+  return {values.low, values.high};
 }
 
 // The ends and sides of the shell determine the space it needs.

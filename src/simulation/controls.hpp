@@ -33,7 +33,6 @@ struct RunControls {
 /// Controls of a scenario. The simulation adds the points of the activity time courses of its laws.
 RunControls make_controls(const Scenario& scenario);
 
-/// Length of the next step.
 class StepLength {
  public:
   /// Continue with steps of about `wanted_s`; 0: start.

@@ -26,7 +26,6 @@ class FullModel {
   /// Update after a step of the side. Returns the state of the full model before it.
   State follow(const Model& side, const State& state);
 
-  /// Set the state from that of the side, and the internal variables of all laws.
   void go_to(const Model& side, const State& state, std::vector<std::vector<double>> internals);
 
   /// Override activities of a law; cells of the full model. Returns those of the side. Throws UsageError unless mirror

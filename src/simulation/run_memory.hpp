@@ -33,7 +33,6 @@ struct RunMemory {
   std::map<std::string, CellArray> outside_arrays;   // cells (all, with mirror planes): set from outside for output
 };
 
-/// Whether the run has ended.
 bool has_ended(const RunMemory& run, const RunControls& controls);
 
 /// Error: the memory does not fit the model.

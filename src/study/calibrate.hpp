@@ -99,7 +99,6 @@ Calibration calibrate(const CalibrationProblem& problem, const CalibrationHooks&
 /// and, if all targets were met, these under [expect]. Written in full if a base would not give the same scenario.
 std::string calibrated_toml(const CalibrationProblem& problem, const Calibration& calibration, const std::string& file);
 
-/// Result of one evaluation.
 struct Evaluation {
   std::vector<double> misses;  // targets, in units of their tolerances: met from -1 to 1; empty: no value
   bool over = false;           // end the search: targets met, or limit reached

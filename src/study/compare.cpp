@@ -11,6 +11,8 @@
 #include "measure/energy_norm.hpp"
 #include "record/mesh_writer.hpp"
 #include "record/results.hpp"
+#include "scenario/print.hpp"
+#include "study/frame_surface.hpp"
 #include "tissue/hexahedron.hpp"
 
 namespace plica {

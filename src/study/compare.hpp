@@ -7,8 +7,6 @@
 #include <string>
 
 #include "measure/reference_run.hpp"
-#include "scenario/print.hpp"
-#include "study/frame_surface.hpp"
 
 namespace plica {
 

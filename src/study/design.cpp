@@ -13,7 +13,6 @@
 #include <random>
 #include <sstream>
 
-#include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/numbers.hpp"
 #include "scenario/print.hpp"
@@ -118,7 +117,6 @@ std::string value_at(const StudyKey& key, double place) {
   return number_of(key, std::clamp(value, key.low, key.high));
 }
 
-// Values of a grid.
 std::vector<std::string> values_of(const StudyKey& key) {
   if (!key.values.empty()) return key.values;
   const double steps = key.step ? steps_of(key) : *key.count - 1;

@@ -9,7 +9,6 @@
 
 namespace plica {
 
-/// One run of a study.
 struct StudyPoint {
   int point = 0;                    // number in the design, from 1
   int replicate = 1;                // same point with other seeds, from 1

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue/hexahedron.hpp"
 #include "tissue/mesh_faces.hpp"
 
 namespace plica {
@@ -15,13 +14,6 @@ constexpr int basal_face = 4, apical_face = 5;
 
 using Corners = std::array<Vec3, 4>;
 
-Corners corners_of(const Frame& frame, const std::array<NodeId, 4>& facet) {
-  Corners corners;
-  for (int i = 0; i < 4; ++i) corners[i] = frame.positions[facet[i].index()];
-  return corners;
-}
-
-/// Point of the facet at (u, v) in [0, 1]^2.
 Vec3 point_at(const Corners& x, double u, double v) {
   return (1 - u) * (1 - v) * x[0] + u * (1 - v) * x[1] + u * v * x[2] + (1 - u) * v * x[3];
 }
@@ -67,14 +59,14 @@ Quads basal_facets(const Frame& frame) { return facets_on(frame, basal_face); }
 
 double total_area(const Frame& frame, const Quads& facets) {
   double area = 0;
-  for (const auto& facet : facets) area += facet_area(corners_of(frame, facet));
+  for (const auto& facet : facets) area += facet_area(gather(frame.positions, facet));
   return area;
 }
 
 TriangleSurface fine_triangles(const Frame& frame, const Quads& facets) {
   TriangleSurface surface;
   for (const auto& facet : facets) {
-    const Corners corners = corners_of(frame, facet);
+    const Corners corners = gather(frame.positions, facet);
     const int first = static_cast<int>(surface.points.size());
     constexpr int row = pieces + 1, middles = row * row;
     for (int j = 0; j <= pieces; ++j)
@@ -95,7 +87,7 @@ double facet_error(const Frame& frame, const Quads& facets) {
   // In a piece of twist t, uv lies at most 1/16 off its triangles about the middle; a piece has twist/16.
   double largest = 0;
   for (const auto& facet : facets) {
-    const Corners x = corners_of(frame, facet);
+    const Corners x = gather(frame.positions, facet);
     largest = std::max(largest, (x[0] - x[1] + x[2] - x[3]).norm() / (16 * pieces * pieces));
   }
   return largest;
@@ -105,7 +97,7 @@ Distances distances_to(const SurfaceDistance& other, const Frame& frame, const Q
   Distances result;
   double area = 0;
   for (const auto& facet : facets) {
-    const Corners corners = corners_of(frame, facet);
+    const Corners corners = gather(frame.positions, facet);
     for (int j = 0; j < samples; ++j)
       for (int i = 0; i < samples; ++i) {
         const double u = (i + 0.5) / samples, v = (j + 0.5) / samples;

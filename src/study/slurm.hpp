@@ -6,7 +6,6 @@
 // a run with a row is not repeated. Rejected: a server or a database that distributes runs.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -33,7 +32,6 @@ struct SlurmSubmission {
 SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, const SlurmOptions& options,
                                 const std::function<bool()>& stop);
 
-/// Runs of a task of the job array.
 std::vector<std::size_t> runs_of_task(const StudyDirectory& directory, int task);
 
 /// Resubmit runs without a row, `retries` times at most; called by the last job when the table is written. Returns a

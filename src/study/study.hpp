@@ -38,9 +38,7 @@ class Study {
   /// Notes on input that is allowed, but possibly not intended.
   [[nodiscard]] std::vector<Diagnostic> notes() const;
 
-  /// Scenario of a run. Throws ScenarioError for invalid values.
   [[nodiscard]] Scenario scenario_of(std::size_t run) const;
-  /// Name of the files of a run.
   [[nodiscard]] std::string name_of(std::size_t run) const;
 
   /// Make a run on one thread; empty if `stop` became true, or another process makes it. Kept files go to

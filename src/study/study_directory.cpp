@@ -9,7 +9,6 @@
 #include <chrono>
 
 #include "core/errors.hpp"
-#include "core/files.hpp"
 #include "core/numbers.hpp"
 #include "core/version.hpp"
 #include "record/run_directory.hpp"

@@ -43,7 +43,6 @@ class StudyDirectory {
   /// Content of study.json. Throws FileError if it is damaged.
   [[nodiscard]] nlohmann::ordered_json begun() const;
   [[nodiscard]] StudyRows rows() const;
-  /// Runs without a row.
   [[nodiscard]] std::vector<std::size_t> open_runs() const;
   /// Add a row to the file of this process.
   void add(std::size_t run, const std::string& row);
@@ -57,7 +56,6 @@ class StudyDirectory {
   std::unique_ptr<RowFile> own_rows_;
 };
 
-/// Progress of a study.
 struct StudyStatus {
   std::size_t runs = 0;
   std::map<std::string, std::size_t> by_status;  // of finished runs

@@ -15,7 +15,6 @@
 namespace plica {
 namespace {
 
-// Key given by the study, with its location.
 struct GivenKey {
   std::string table, key;  // "vary" or "set"
   int line = 0;

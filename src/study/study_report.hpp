@@ -10,7 +10,6 @@
 
 namespace plica {
 
-/// Whether a directory contains a study.
 bool holds_study(const std::filesystem::path& directory);
 
 /// Make the page of a study, finished or not, for a file in `place`, which determines its links to kept files. Throws

@@ -103,17 +103,17 @@ constexpr double nothing_um = 1e-6;  // rounding
 
 // Cell rows between a cell and the midline: 0 if the midline cuts the cell, 1 if it is a side of it; else -1.
 int start_at_midline(const Tissue& tissue, const Cell& cell, bool has_back) {
-  double low = std::numeric_limits<double>::infinity(), high = -low, height = 0;
+  Extent across;
+  double height = 0;
   int on_it = 0;
   for (const NodeId corner : cell.apical_corners()) {
     const Vec3& x = tissue.rest_positions[corner.index()];
-    low = std::min(low, x.y());
-    high = std::max(high, x.y());
+    across.take(x.y());
     height += x.z();
     on_it += static_cast<int>(std::abs(x.y()) < nothing_um);
   }
   if (has_back && height >= 0) return -1;
-  if (low < -nothing_um && high > nothing_um) return 0;
+  if (across.low < -nothing_um && across.high > nothing_um) return 0;
   return on_it > 1 ? 1 : -1;
 }
 

@@ -1,7 +1,6 @@
 #include "tissue/mesh_faces.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "tissue/hexahedral_mesh.hpp"
 

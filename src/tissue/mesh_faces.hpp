@@ -47,7 +47,6 @@ std::array<NodeId, 8> turned_cell(const std::array<NodeId, 8>& cell, int apical_
 /// side. MeshError otherwise.
 void check_apical_faces(const HexahedralMesh& mesh, const MeshFaces& faces, const std::vector<int>& apical_faces);
 
-/// Return the face opposite to a face of a hexahedron.
 constexpr int opposite_face(int face) { return face ^ 1; }
 
 }  // namespace plica

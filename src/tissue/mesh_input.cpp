@@ -1,6 +1,5 @@
 #include "tissue/mesh_input.hpp"
 
-#include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <Eigen/Geometry>

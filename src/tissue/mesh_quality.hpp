@@ -41,7 +41,6 @@ struct CornerRatio {
   CellId cell;
 };
 
-/// Return the corner with the smallest ratio.
 CornerRatio least_corner_ratio(const Tissue& tissue, const Vectors& positions);
 
 }  // namespace plica

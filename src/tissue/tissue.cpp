@@ -57,6 +57,12 @@ std::array<Vec3, 4> rest_corners(const Tissue& tissue, const Facet& facet) {
   return points;
 }
 
+Extent extent_along(const Tissue& tissue) {
+  Extent extent;
+  for (const Vec3& x : tissue.rest_positions) extent.take(x.x());
+  return extent;
+}
+
 namespace {
 
 template <class Corners>

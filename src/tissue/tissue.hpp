@@ -3,7 +3,9 @@
 // makes a new tissue); present node positions are in State.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -121,7 +123,6 @@ struct Cell {
 /// Cell set: one flag per cell.
 using CellSet = std::vector<bool>;
 
-/// Array with one number per cell.
 using CellArray = std::vector<double>;
 
 /// Position of a hanging node: weighted mean of free nodes; weights sum to 1.
@@ -170,7 +171,6 @@ struct Tissue {
     for (const auto& [free, weight] : hanging[node.index() - free_node_count()]) take(free, weight);
   }
 
-  /// Whether it is periodic.
   [[nodiscard]] bool is_periodic() const { return !hanging_shifts.empty(); }
 
   /// Return the free node of which a node is the image; any other node itself.
@@ -190,24 +190,31 @@ struct Tissue {
   void carry_hanging(std::span<Vec3> forces) const;
 };
 
-/// Return the points of the element among `positions`.
-inline HexPoints gather(std::span<const Vec3> positions, const std::array<NodeId, 8>& nodes) {
-  HexPoints points;
-  for (int i = 0; i < 8; ++i) points[i] = positions[nodes[i].index()];
+/// Return the points of an element or a face among `positions`.
+template <std::size_t count>
+std::array<Vec3, count> gather(std::span<const Vec3> positions, const std::array<NodeId, count>& nodes) {
+  std::array<Vec3, count> points;
+  for (std::size_t i = 0; i < count; ++i) points[i] = positions[nodes[i].index()];
   return points;
 }
+inline std::array<Vec3, 4> gather(std::span<const Vec3> positions, const Facet& facet) {
+  return gather(positions, facet.nodes);
+}
+
+/// Interval of numbers; empty until it has taken one.
+struct Extent {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  void take(double value) { low = std::min(low, value), high = std::max(high, value); }
+};
+
+/// Return the extent of the tissue along x in the reference state, um.
+Extent extent_along(const Tissue& tissue);
 
 /// Return the corners of a grid cell, or its rest shape, as a hexahedron.
 HexPoints hexahedron(std::span<const Vec3> corners);
 
 /// Return the mean of the corners of the cell: its monitored barycentre.
 Vec3 cell_centre(const Cell& cell, const Vectors& positions);
-
-/// Return the corners of a facet.
-inline std::array<Vec3, 4> gather(std::span<const Vec3> positions, const Facet& facet) {
-  return {positions[facet.nodes[0].index()], positions[facet.nodes[1].index()], positions[facet.nodes[2].index()],
-          positions[facet.nodes[3].index()]};
-}
 
 /// Return the corners of the facet in the rest shape of its element, which changes only when daughters grow.
 std::array<Vec3, 4> rest_corners(const Tissue& tissue, const Facet& facet);

@@ -7,6 +7,7 @@
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "support/divided.hpp"
+#include "support/elements.hpp"
 #include "support/law_checks.hpp"
 
 namespace {
@@ -167,7 +168,8 @@ TEST(BendingError, GrowsWithTheDifferenceOfAreasAndFallsWithLayers) {
                              .cells = {2, 1, 1},
                              .elements_per_cell = {1, 1, layers}}));
     EXPECT_FALSE(bending_error(model, model.tissue.rest_positions));  // no law
-    model.laws.push_back(std::make_unique<Corotational>(model.tissue, ElasticModuli::from_young(1, 0.45), 0));
+    model.laws.push_back(
+        std::make_unique<Corotational>(model.tissue, in_elements(model.tissue, ElasticModuli::from_young(1, 0.45)), 0));
     EXPECT_FALSE(bending_error(model, model.tissue.rest_positions));
     Vectors x = model.tissue.rest_positions;
     for (Vec3& one : x) one.x() *= 1 - 0.02 * one.z();

@@ -6,6 +6,7 @@
 #include "mechanics/elasticity/shape_memory.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/divided.hpp"
+#include "support/elements.hpp"
 
 namespace {
 
@@ -159,7 +160,7 @@ TEST(Grow, OfDaughtersThatStayHalvesChangesNothing) {
 TEST(Grow, BulkModulusIsAgainstTheVolumesThatCellsAreHeldAt) {
   Model model(distorted_block(three_cells, 2, 7));
   model.volumes.hold(true);
-  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, 3.0, true));
+  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, in_elements(model.tissue, 3.0), true));
   State state = rest_state(model);
   for (Vec3& x : state.positions) x = Vec3(1.3 * x.x(), 0.9 * x.y() + 0.002 * x.x() * x.z(), x.z());
   divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 1}, 100, 0.8}});
@@ -189,12 +190,12 @@ TEST(Grow, MakesLawsOfTheNewRestShapes) {
   const BlockShape row{.length_um = 220, .width_um = 20, .cell_height_um = 40, .cells = {11, 1, 1}};
   const auto laws_of = [](const Tissue& tissue) {
     std::vector<std::unique_ptr<Law>> laws;
-    laws.push_back(std::make_unique<Corotational>(tissue, ElasticModuli::from_young(1, 0.45), 2));
+    laws.push_back(std::make_unique<Corotational>(tissue, in_elements(tissue, ElasticModuli::from_young(1, 0.45)), 2));
     laws.push_back(
         std::make_unique<NeoHookean>(tissue, std::vector<NeoHookeanMaterial>(tissue.elements.size(), {0.4, 2})));
     laws.push_back(std::make_unique<ShapeMemory>(tissue, AttractorSprings{.shear_modulus = 0.3, .preload = 0.1}, 2));
     laws.push_back(std::make_unique<CornerBarrier>(tissue, 1, 0.9));
-    laws.push_back(std::make_unique<Dilatation>(tissue, 3));
+    laws.push_back(std::make_unique<Dilatation>(tissue, in_elements(tissue, 3.0), false));
     laws.push_back(std::make_unique<SurfaceDrag>(tissue, 1e-3));
     laws.push_back(std::make_unique<Inertia>(tissue, 1e-12));
     return laws;

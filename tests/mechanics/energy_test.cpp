@@ -14,6 +14,7 @@
 #include "mechanics/surroundings.hpp"
 #include "simulation/simulation.hpp"
 #include "solver/step/newton_stepper.hpp"
+#include "support/elements.hpp"
 #include "support/law_checks.hpp"
 #include "support/scenarios.hpp"
 
@@ -76,19 +77,19 @@ TEST(EnergyFlow, IsTheWorkOfTheLawsForces) {
   };
   const ElasticModuli moduli = ElasticModuli::from_young(1, 0.3);
   const std::vector<std::pair<const char*, Make>> laws = {
-      {"corotational", [&](const Tissue& t) { return std::make_unique<Corotational>(t, moduli, 0); }},
-      {"and viscous", [&](const Tissue& t) { return std::make_unique<Corotational>(t, moduli, 2); }},
+      {"corotational", [&](const Tissue& t) { return std::make_unique<Corotational>(t, in_elements(t, moduli), 0); }},
+      {"and viscous", [&](const Tissue& t) { return std::make_unique<Corotational>(t, in_elements(t, moduli), 2); }},
       {"shape memory",
        [&](const Tissue& t) {
          return std::make_unique<ShapeMemory>(t, AttractorSprings{3, 0, 0, 0}, 2);
        }},
       {"neo-Hookean",
        [&](const Tissue& t) {
-         return std::make_unique<NeoHookean>(t, std::vector{1.0, 2.0});
+         return std::make_unique<NeoHookean>(t, materials_of(t, std::vector{1.0, 2.0}));
        }},
       {"that flows",
        [&](const Tissue& t) {
-         return std::make_unique<NeoHookean>(t, std::vector{1.0, 2.0}, std::vector{3.0, 5.0});
+         return std::make_unique<NeoHookean>(t, materials_of(t, std::vector{1.0, 2.0}, std::vector{3.0, 5.0}));
        }},
       {"shell drag",
        [](const Tissue& t) {
@@ -130,7 +131,8 @@ Model spring_in_fluid() {
   for (auto& directions : model.held) directions = {true, true, true};
   model.held[1][0] = false;
   model.volumes.hold(false);
-  model.laws.push_back(std::make_unique<Corotational>(model.tissue, ElasticModuli::from_young(1e-12, 0.3), 0));
+  model.laws.push_back(std::make_unique<Corotational>(
+      model.tissue, in_elements(model.tissue, ElasticModuli::from_young(1e-12, 0.3)), 0));
   model.laws.push_back(std::make_unique<SurfaceDrag>(model.tissue, 0.1));  // of a quarter of 20 x 20 um
   model.laws.push_back(
       std::make_unique<Contraction>(std::vector<Spring>{{{NodeId(0), NodeId(1)}, 0, pull, 0, 0}}, Program{}));

@@ -13,6 +13,7 @@
 #include "mechanics/elasticity/corotational.hpp"
 #include "mechanics/elasticity/turning_elements.hpp"
 #include "mechanics/kernels/element_chunks.hpp"
+#include "support/elements.hpp"
 #include "support/law_checks.hpp"
 #include "tissue/tissue.hpp"
 
@@ -88,8 +89,8 @@ TEST(Kernels, CorotationalElementsAreThoseOfTheWholeStiffness) {
           const Tissue tissue = row(elements);
           Motion motion = random_motion(tissue, 4, static_cast<unsigned>(++cases));
           motion.semidefinite_tangent = semidefinite;
-          expect_same_law(Corotational(tissue, moduli, viscosity, {}, kernels), DenseCorotational(tissue, viscosity),
-                          motion, 1e-12);
+          expect_same_law(Corotational(tissue, in_elements(tissue, moduli), viscosity, kernels),
+                          DenseCorotational(tissue, viscosity), motion, 1e-12);
         }
   std::printf("%d cases\n", cases);
 }
@@ -134,7 +135,7 @@ TEST(Kernels, ElementsWithoutARotationDoNotHarmTheOthers) {
   turn_inside_out(9, 1e-5);
   for (const Kernels kernels : available_kernels()) {
     SCOPED_TRACE(name(kernels));
-    const Corotational law(tissue, moduli, 0, {}, kernels);
+    const Corotational law(tissue, in_elements(tissue, moduli), 0, kernels);
     const DenseCorotational reference(tissue, 0);
     expect_same(flat(forces_of(law, motion.step())), flat(forces_of(reference, motion.step())), 1e-10);
   }
@@ -149,7 +150,8 @@ TEST(Kernels, ElementsOfAnyStretchHaveTheirRotation) {
       for (Vec3& x : motion.positions) x[axis] *= factor;
       for (const Kernels kernels : available_kernels()) {
         SCOPED_TRACE(::testing::Message() << name(kernels) << ", times " << factor << " along axis " << axis);
-        expect_same_law(Corotational(tissue, moduli, 0, {}, kernels), DenseCorotational(tissue, 0), motion, 1e-10);
+        expect_same_law(Corotational(tissue, in_elements(tissue, moduli), 0, kernels), DenseCorotational(tissue, 0),
+                        motion, 1e-10);
       }
     }
 }
@@ -192,8 +194,8 @@ TEST(Kernels, VolumesAreThoseOfEachElement) {
 // All results that are sums over elements, as bits.
 std::vector<double> results_with(int threads, const Tissue& tissue, const Motion& motion, Kernels kernels) {
   const ThreadCount scope(threads);
-  const Corotational elasticity(tissue, moduli, 1, {}, kernels);
-  const Dilatation dilatation(tissue, moduli.bulk_modulus(), false, {}, kernels);
+  const Corotational elasticity(tissue, in_elements(tissue, moduli), 1, kernels);
+  const Dilatation dilatation(tissue, in_elements(tissue, moduli.bulk_modulus()), false, kernels);
   const CellVolumes volumes(tissue, kernels);
   const Vectors direction = Random(6).vectors(tissue.node_count());
   std::vector<double> results = volumes.volumes(motion.positions);

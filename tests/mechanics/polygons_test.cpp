@@ -11,6 +11,7 @@
 #include "mechanics/elasticity/shape_memory.hpp"
 #include "mechanics/surroundings.hpp"
 #include "support/constraint_law.hpp"
+#include "support/elements.hpp"
 #include "support/law_checks.hpp"
 #include "support/prisms.hpp"
 #include "tissue/faces.hpp"
@@ -35,11 +36,13 @@ INSTANTIATE_TEST_SUITE_P(Splits, LawsOnPolygons, testing::Values(PolygonSplit::d
 
 TEST_P(LawsOnPolygons, DerivativesAgreeWithFiniteDifferences) {
   const double size_um = 0.3;
-  check_derivatives(Corotational(tissue, ElasticModuli::from_young(1, 0.45), 2), tissue, size_um, 1);
-  check_derivatives(NeoHookean(tissue, std::vector(tissue.cells.size(), 0.4)), tissue, size_um, 1);
+  check_derivatives(Corotational(tissue, in_elements(tissue, ElasticModuli::from_young(1, 0.45)), 2), tissue, size_um,
+                    1);
+  check_derivatives(NeoHookean(tissue, materials_of(tissue, std::vector(tissue.cells.size(), 0.4))), tissue, size_um,
+                    1);
   check_derivatives(ShapeMemory(tissue, {.stiffness = 8}, 0), tissue, size_um, 1);
   check_derivatives(CornerBarrier(tissue, 0.4, 3), tissue, size_um / 2, 1);
-  check_derivatives(Dilatation(tissue, 3), tissue, size_um, 1);
+  check_derivatives(Dilatation(tissue, in_elements(tissue, 3.0), false), tissue, size_um, 1);
   std::vector<double> pressures;
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) pressures.push_back(c % 3 == 0 ? 0.7 : -0.4);
   check_derivatives(ConstraintLaw(CellVolumes(tissue), pressures), tissue, size_um, 1);
@@ -188,9 +191,9 @@ constexpr std::size_t passive_laws = 3;  // the first of
 std::vector<std::unique_ptr<Law>> laws_on(const Tissue& tissue) {
   const CellSet all(tissue.cells.size(), true);
   std::vector<std::unique_ptr<Law>> laws;
-  laws.push_back(std::make_unique<Corotational>(tissue, ElasticModuli::from_young(1, 0.3), 2));
-  laws.push_back(std::make_unique<Dilatation>(tissue, 3));
-  laws.push_back(std::make_unique<NeoHookean>(tissue, std::vector(tissue.cells.size(), 0.4)));
+  laws.push_back(std::make_unique<Corotational>(tissue, in_elements(tissue, ElasticModuli::from_young(1, 0.3)), 2));
+  laws.push_back(std::make_unique<Dilatation>(tissue, in_elements(tissue, 3.0), false));
+  laws.push_back(std::make_unique<NeoHookean>(tissue, materials_of(tissue, std::vector(tissue.cells.size(), 0.4))));
   for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
     laws.push_back(std::make_unique<Cortex>(
         tissue, all, CortexRule{.side = side, .tension = 1.4, .saturation = 0.16, .stiffness = 0.7}));
@@ -227,7 +230,7 @@ INSTANTIATE_TEST_SUITE_P(Splits, PeriodicLaws, testing::Values(PolygonSplit::dia
 TEST_P(PeriodicLaws, DerivativesAgreeWithFiniteDifferences) {
   const CellSet all(tissue.cells.size(), true);
   check_derivatives(Cortex(tissue, all, {.side = CellSide::lateral, .tension = 1.4, .stiffness = 0.7}), tissue, 0.3, 1);
-  check_derivatives(Corotational(tissue, ElasticModuli::from_young(1, 0.45), 2), tissue, 0.3, 1);
+  check_derivatives(Corotational(tissue, in_elements(tissue, ElasticModuli::from_young(1, 0.45)), 2), tissue, 0.3, 1);
 }
 
 // The energy's change with a free node, whose images go along, is what is carried to it.

@@ -4,6 +4,7 @@
 
 #include "mechanics/constraints/cell_volume.hpp"
 #include "solver/algebra/linear_solver.hpp"
+#include "support/elements.hpp"
 
 namespace plica::support {
 namespace {
@@ -54,8 +55,8 @@ LinearStatics::LinearStatics(const Tissue& tissue)
 LinearStatics::LinearStatics(const Tissue& tissue, const ElasticModuli& moduli) : LinearStatics(tissue) {
   Triplets triplets(tissue);
   const Motion rest = at_rest(tissue);
-  Corotational(tissue, moduli, 0).add_tangent(rest.step(), triplets);
-  Dilatation(tissue, moduli.bulk_modulus()).add_tangent(rest.step(), triplets);
+  Corotational(tissue, in_elements(tissue, moduli), 0).add_tangent(rest.step(), triplets);
+  Dilatation(tissue, in_elements(tissue, moduli.bulk_modulus()), false).add_tangent(rest.step(), triplets);
   stiffness_ = std::make_unique<Stiffness>(size_, triplets);
 }
 

@@ -1,13 +1,15 @@
 #include "support/models.hpp"
 
 #include "mechanics/obstacles/vitelline.hpp"
+#include "support/elements.hpp"
 
 namespace plica::support {
 
 void add_elasticity(Model& model, double poisson) {
   const ElasticModuli moduli = ElasticModuli::from_young(1, poisson);
-  model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, 0));
-  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus()));
+  model.laws.push_back(std::make_unique<Corotational>(model.tissue, in_elements(model.tissue, moduli), 0));
+  model.laws.push_back(
+      std::make_unique<Dilatation>(model.tissue, in_elements(model.tissue, moduli.bulk_modulus()), false));
 }
 
 void add_contraction(Model& model, const CellSet& cells, const ContractionRule& rule, Program program) {

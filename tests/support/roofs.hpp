@@ -3,6 +3,7 @@
 
 #include "mechanics/contact/self_contact.hpp"
 #include "support/bodies.hpp"
+#include "support/elements.hpp"
 #include "support/models.hpp"
 
 namespace plica::support {
@@ -34,8 +35,9 @@ inline Model model_of(const Roofs& roofs, const SelfContactRule& rule) {
   Model model(roofs.bodies.tissue());
   model.volumes.hold(false);
   const ElasticModuli soft = ElasticModuli::from_young(0.3, 0.3);
-  model.laws.push_back(std::make_unique<Corotational>(model.tissue, soft, 0));
-  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, soft.bulk_modulus()));
+  model.laws.push_back(std::make_unique<Corotational>(model.tissue, in_elements(model.tissue, soft), 0));
+  model.laws.push_back(
+      std::make_unique<Dilatation>(model.tissue, in_elements(model.tissue, soft.bulk_modulus()), false));
   add_drag(model);
   model.laws.push_back(std::make_unique<SelfContact>(model.tissue, rule));
   for (std::size_t n = 0; n < roofs.upper; ++n)

@@ -3,6 +3,7 @@
 // Harder 1985 (straight and curved beam), the cantilever of the textbook, Cook's membrane, in the problems' own units.
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "solver/step/newton_stepper.hpp"
+#include "support/elements.hpp"
 #include "support/linear_statics.hpp"
 #include "support/loads.hpp"
 
@@ -86,8 +87,9 @@ TEST(Bending, ExactCellVolumesDoNotStiffenIt) {
   for (const double poisson : {0.3, 0.45, 0.499}) {
     Model model(strip());
     const ElasticModuli moduli = ElasticModuli::from_young(young, poisson);
-    model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, 0));
-    model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus()));
+    model.laws.push_back(std::make_unique<Corotational>(model.tissue, in_elements(model.tissue, moduli), 0));
+    model.laws.push_back(
+        std::make_unique<Dilatation>(model.tissue, in_elements(model.tissue, moduli.bulk_modulus()), false));
     const double ratio = ratio_with_held_volumes(std::move(model), poisson);
     std::printf("bending, nu = %.3f, cell volumes held: moment over exact %.6f\n", poisson, ratio);
     EXPECT_NEAR(ratio, 1, 0.02);
@@ -101,8 +103,9 @@ double ratio_of_neo_hookean(double poisson, const std::array<int, 3>& elements_p
                            .cells = {8, 1, 1},
                            .elements_per_cell = elements_per_cell}));
   const ElasticModuli moduli = ElasticModuli::from_young(young, poisson);
-  model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, std::vector<double>(8, moduli.shear_modulus)));
-  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.lame_lambda, true));
+  model.laws.push_back(std::make_unique<NeoHookean>(
+      model.tissue, materials_of(model.tissue, std::vector<double>(8, moduli.shear_modulus))));
+  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, in_elements(model.tissue, moduli.lame_lambda), true));
   const double ratio = ratio_with_held_volumes(std::move(model), poisson);
   std::printf("bending, neo-hookean, nu = %.2f, %d elements a cell along and %d high: moment over exact %.4f\n",
               poisson, elements_per_cell[0], elements_per_cell[2], ratio);

@@ -12,6 +12,7 @@
 #include "mechanics/contact/self_contact.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/bodies.hpp"
+#include "support/elements.hpp"
 #include "support/models.hpp"
 
 namespace {
@@ -66,8 +67,8 @@ std::vector<Pressed> press(const Mesh& below, const Mesh& above, const std::vect
   const Tissue& tissue = model.tissue;
   model.volumes.hold(false);
   const ElasticModuli moduli = ElasticModuli::from_young(modulus, poisson);
-  model.laws.push_back(std::make_unique<Corotational>(tissue, moduli, 0));
-  model.laws.push_back(std::make_unique<Dilatation>(tissue, moduli.bulk_modulus()));
+  model.laws.push_back(std::make_unique<Corotational>(tissue, in_elements(tissue, moduli), 0));
+  model.laws.push_back(std::make_unique<Dilatation>(tissue, in_elements(tissue, moduli.bulk_modulus()), false));
   model.laws.push_back(std::make_unique<SurfaceDrag>(tissue, 1e-6));
   model.laws.push_back(std::make_unique<SelfContact>(tissue, SelfContactRule{CellSide::apical, begin, stiffness, 3}));
   for (std::size_t n = 0; n < tissue.node_count(); ++n) {
@@ -167,8 +168,8 @@ Pressure pressure(const Block& below, const Block& above, bool rigid_below) {
   const Tissue& tissue = model.tissue;
   model.volumes.hold(false);
   const ElasticModuli moduli = ElasticModuli::from_young(block_modulus, 0);
-  model.laws.push_back(std::make_unique<Corotational>(tissue, moduli, 0));
-  model.laws.push_back(std::make_unique<Dilatation>(tissue, moduli.bulk_modulus()));
+  model.laws.push_back(std::make_unique<Corotational>(tissue, in_elements(tissue, moduli), 0));
+  model.laws.push_back(std::make_unique<Dilatation>(tissue, in_elements(tissue, moduli.bulk_modulus()), false));
   model.laws.push_back(std::make_unique<SurfaceDrag>(tissue, 1e-5));
   model.laws.push_back(
       std::make_unique<SelfContact>(tissue, SelfContactRule{CellSide::apical, flat_begin, flat_stiffness, 6}));

@@ -9,6 +9,7 @@
 #include "mechanics/elasticity/turning_elements.hpp"
 #include "simulation/simulation.hpp"
 #include "solver/step/newton_stepper.hpp"
+#include "support/elements.hpp"
 #include "support/law_checks.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
@@ -27,7 +28,8 @@ Model one_spring_in_fluid() {
   for (auto& directions : model.held) directions = {true, true, true};
   model.held[1][0] = false;
   model.volumes.hold(false);
-  model.laws.push_back(std::make_unique<Corotational>(model.tissue, ElasticModuli::from_young(1e-12, 0.3), 0));
+  model.laws.push_back(std::make_unique<Corotational>(
+      model.tissue, in_elements(model.tissue, ElasticModuli::from_young(1e-12, 0.3)), 0));
   model.laws.push_back(std::make_unique<SurfaceDrag>(model.tissue, 0.1));
   model.laws.push_back(
       std::make_unique<Contraction>(std::vector<Spring>{{{NodeId(0), NodeId(1)}, stiffness, 0, 0, length}}, Program{}));
@@ -96,8 +98,8 @@ TEST(SpringInFluid, ConvergesToTheExponentialAtSecondOrder) {
 /// Largest nodal force over E A (A: mean face of a cell) after turns by 0 to 360 degrees about an axis.
 double worst_force(const Tissue& tissue, const Vec3& axis, int& cases) {
   const ElasticModuli moduli = ElasticModuli::from_young(1, 0.45);
-  const Corotational elasticity(tissue, moduli, 0);
-  const Dilatation dilatation(tissue, moduli.bulk_modulus());
+  const Corotational elasticity(tissue, in_elements(tissue, moduli), 0);
+  const Dilatation dilatation(tissue, in_elements(tissue, moduli.bulk_modulus()), false);
   const double area = 20 * 20;
   double worst = 0;
   for (int degrees = 0; degrees <= 360; degrees += 15) {
@@ -142,8 +144,9 @@ constexpr double density = 1e-4;
 Model free_body() {
   Model model(distorted_block({.length_um = 60, .width_um = 40, .cell_height_um = 40, .cells = {3, 2, 2}}, 1, 1));
   const ElasticModuli moduli = ElasticModuli::from_young(1, 0.45);
-  model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, 0));
-  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus()));
+  model.laws.push_back(std::make_unique<Corotational>(model.tissue, in_elements(model.tissue, moduli), 0));
+  model.laws.push_back(
+      std::make_unique<Dilatation>(model.tissue, in_elements(model.tissue, moduli.bulk_modulus()), false));
   ContractionRule rule{.stiffness = 1, .preload = 2, .damping = 0.1};
   model.laws.push_back(std::make_unique<Contraction>(
       contraction_springs(model.tissue, CellSet(model.tissue.cells.size(), true), rule), Program{}));
@@ -358,7 +361,7 @@ Pulls pulls_of_strip(double stretch, int steps) {
   Model model(
       build_block({.length_um = strip_length, .width_um = width, .cell_height_um = height, .cells = {3, 1, 1}}));
   const std::vector<double> moduli(3, shear_modulus), relaxation(3, decay_s);
-  model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, moduli, relaxation));
+  model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, materials_of(model.tissue, moduli, relaxation)));
   State state = rest_state(model);
   for (std::size_t n = 0; n < model.tissue.node_count(); ++n) {
     const Vec3& X = model.tissue.rest_positions[n];

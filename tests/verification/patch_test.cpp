@@ -2,6 +2,7 @@
 // boundary. Inner nodes, stresses and the supports' forces must be exact. The same of polygons, and a thick sphere.
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/surroundings.hpp"
+#include "support/elements.hpp"
 #include "support/law_checks.hpp"
 #include "support/linear_statics.hpp"
 #include "support/prisms.hpp"
@@ -43,7 +44,7 @@ TEST(Patch, HasSevenHexahedraOfVolumeOneOneOfThemWithAFoldedCorner) {
     volume += hex_volume(shape);
   }
   EXPECT_EQ(folded, 1);
-  EXPECT_THROW(Corotational(tissue, moduli, 0), std::domain_error);
+  EXPECT_THROW(Corotational(tissue, in_elements(tissue, moduli), 0), std::domain_error);
   EXPECT_EQ(tissue.elements.size(), 7u);
   EXPECT_NEAR(volume, 1, 1e-14);
 }
@@ -97,8 +98,8 @@ TEST(Patch, LinearDisplacementIsExactThroughTheLaws) {
 // The patch deformed and then turned by a finite rotation: the forces are those before, turned.
 TEST(Patch, RotatedPatchHasRotatedForces) {
   const Tissue tissue = patch(0.3);
-  const Corotational elasticity(tissue, moduli, 0);
-  const Dilatation dilatation(tissue, moduli.bulk_modulus());
+  const Corotational elasticity(tissue, in_elements(tissue, moduli), 0);
+  const Dilatation dilatation(tissue, in_elements(tissue, moduli.bulk_modulus()), false);
   Motion motion = at_rest(tissue);
   for (Vec3& x : motion.positions) x += 20 * (gradient() * x);
   Vectors before = forces_of(elasticity, motion.step());
@@ -122,8 +123,8 @@ TEST(Patch, RotatedPatchHasRotatedForces) {
 // Free faces carry nothing: at a uniform finite stretch the inner nodes of the patch are in balance.
 TEST(Patch, InnerNodesBalanceAtAFiniteUniformStretch) {
   const Tissue tissue = patch(0.3);
-  const Corotational elasticity(tissue, moduli, 0);
-  const Dilatation dilatation(tissue, moduli.bulk_modulus());
+  const Corotational elasticity(tissue, in_elements(tissue, moduli), 0);
+  const Dilatation dilatation(tissue, in_elements(tissue, moduli.bulk_modulus()), false);
   Motion motion = at_rest(tissue);
   const Mat3 F = Vec3(1.3, 0.9, 0.95).asDiagonal();
   for (Vec3& x : motion.positions) x = F * x;

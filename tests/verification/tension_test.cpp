@@ -11,6 +11,7 @@
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "solver/step/newton_stepper.hpp"
+#include "support/elements.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
 
@@ -152,7 +153,8 @@ Pressures pressures(int cells, double apical_tension, double basal_tension) {
   Model model(build_shell({200, 200, 20, {cells, cells, cells}, {1, 1, 1}}));
   const Tissue& tissue = model.tissue;
   model.stiffness_scale = 1e-4;
-  model.laws.push_back(std::make_unique<Corotational>(tissue, ElasticModuli::from_young(1e-4, 0), 0));
+  model.laws.push_back(
+      std::make_unique<Corotational>(tissue, in_elements(tissue, ElasticModuli::from_young(1e-4, 0)), 0));
   model.laws.push_back(std::make_unique<SurfaceDrag>(tissue, 1e-3));
   const CellSet all(tissue.cells.size(), true);
   for (const auto& [side, tension] : {std::pair(CellSide::apical, apical_tension), {CellSide::basal, basal_tension}})
@@ -197,7 +199,8 @@ Model one_spring() {
   for (auto& directions : model.held) directions = {true, true, true};
   model.held[1][0] = false;
   model.volumes.hold(false);
-  model.laws.push_back(std::make_unique<Corotational>(model.tissue, ElasticModuli::from_young(1e-12, 0.3), 0));
+  model.laws.push_back(std::make_unique<Corotational>(
+      model.tissue, in_elements(model.tissue, ElasticModuli::from_young(1e-12, 0.3)), 0));
   model.laws.push_back(std::make_unique<Contraction>(
       std::vector<Spring>{{{NodeId(0), NodeId(1)}, stiffness, 0, damping, length}}, Program{}));
   Vectors loads(8, Vec3::Zero());

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <optional>
 
 #include "tissue/faces.hpp"
 
@@ -42,15 +40,10 @@ std::vector<double> coordinates(const Tissue& tissue, const CellSet& cells, Patt
   return result;
 }
 
-struct Extent {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-};
-
 Extent extent_of(const std::vector<double>& values, const CellSet& cells) {
   Extent extent;
   for (std::size_t c = 0; c < cells.size(); ++c)
-    if (cells[c]) extent = {std::min(extent.low, values[c]), std::max(extent.high, values[c])};
+    if (cells[c]) extent.take(values[c]);
   return extent;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "mechanics/active/cell_pattern.hpp"
 #include "tissue/division.hpp"
 #include "tissue/polygon_cell.hpp"
 

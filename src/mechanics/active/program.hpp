@@ -19,7 +19,6 @@ class Program {
   /// Return the time of the last point, s; the activity is constant from there on.
   [[nodiscard]] double end_s() const { return times_.empty() ? 0 : times_.back(); }
   [[nodiscard]] const std::vector<double>& times_s() const { return times_; }
-  /// Return the times of jumps, s.
   [[nodiscard]] std::vector<double> jumps_s() const;
 
   /// Return increasing times of its points, shifted by each delay and by none. For a program without jumps, delays

@@ -1,7 +1,5 @@
 #include "mechanics/constraints/cell_volume.hpp"
 
-#include <cmath>
-
 #include "core/parallel.hpp"
 #include "tissue/division.hpp"
 
@@ -160,10 +158,6 @@ void Dilatation::fit(const Tissue& tissue, std::size_t place) {
   plica::fit(
       tissue, place, [](std::size_t e) { return static_cast<int>(e); }, batches_);
 }
-
-Dilatation::Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact,
-                       const std::vector<double>& factors, Kernels kernels)
-    : Dilatation(tissue, in_all_elements(tissue, bulk_modulus, factors), cells_are_exact, kernels) {}
 
 VolumeArrays Dilatation::kernel_arrays(const Step& step) const {
   return {.batches = batches_.data(),

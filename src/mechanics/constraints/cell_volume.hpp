@@ -63,7 +63,6 @@ class CellVolumes final : public Constraint {
   [[nodiscard]] std::vector<double> multipliers_after_division(std::span<const double> pressures,
                                                                const Division& division) const override;
 
-  /// Return the input of the kernels.
   [[nodiscard]] VolumeArrays kernel_arrays(std::span<const Vec3> positions, std::span<const double> pressures) const;
 
  private:
@@ -89,9 +88,6 @@ class Dilatation final : public BatchLaw<Dilatation, 8> {
   /// every cell is one element.
   Dilatation(const Tissue& tissue, std::vector<double> bulk_moduli, bool cells_are_exact,
              Kernels kernels = chosen_kernels());
-  /// Make the law with one modulus, times the `factors` of cells if given.
-  Dilatation(const Tissue& tissue, double bulk_modulus, bool cells_are_exact = false,
-             const std::vector<double>& factors = {}, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "dilatation"; }
   [[nodiscard]] double energy(const Step& step) const override;

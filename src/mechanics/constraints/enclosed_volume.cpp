@@ -5,7 +5,6 @@
 
 #include "tissue/division.hpp"
 #include "tissue/faces.hpp"
-#include "tissue/tissue.hpp"
 
 namespace plica {
 namespace {
@@ -17,10 +16,6 @@ using Corners = std::array<Vec3, 4>;
 constexpr double cone_share = -1.0 / 12;
 // Six times that to a triangle is its triple product.
 constexpr double rim_share = -1.0 / 6;
-
-Corners corners_of(std::span<const Vec3> x, const std::array<NodeId, 4>& nodes) {
-  return {x[nodes[0].index()], x[nodes[1].index()], x[nodes[2].index()], x[nodes[3].index()]};
-}
 
 double cone(const Corners& x) {
   const auto& [a, b, c, d] = x;
@@ -79,7 +74,7 @@ double EnclosedVolume::volume(std::span<const Vec3> positions) const {
 
 void EnclosedVolume::values(std::span<const Vec3> x, std::span<double> values) const {
   values[0] = 0;
-  for (const auto& nodes : facets_) values[0] += cone(corners_of(x, nodes));
+  for (const auto& nodes : facets_) values[0] += cone(gather(x, nodes));
   for (const auto& [from, to, place] : rim_) values[0] += rim_share * place.dot(x[to.index()].cross(x[from.index()]));
 }
 
@@ -98,7 +93,7 @@ ConstraintParts EnclosedVolume::parts() const {
 
 void EnclosedVolume::gradients(std::span<const Vec3> x, std::span<Vec3> of_parts) const {
   for (std::size_t f = 0; f < facets_.size(); ++f) {
-    const Corners gradient = cone_gradient(corners_of(x, facets_[f]));
+    const Corners gradient = cone_gradient(gather(x, facets_[f]));
     std::copy(gradient.begin(), gradient.end(), of_parts.begin() + static_cast<std::ptrdiff_t>(4 * f));
   }
   for (std::size_t e = 0; e < rim_.size(); ++e) {
@@ -115,7 +110,7 @@ void EnclosedVolume::for_parts(const std::function<void(std::size_t)>& body, boo
 void EnclosedVolume::add_forces(std::span<const Vec3> x, std::span<const double> multipliers,
                                 std::span<Vec3> forces) const {
   for (const auto& nodes : facets_) {
-    const Corners gradient = cone_gradient(corners_of(x, nodes));
+    const Corners gradient = cone_gradient(gather(x, nodes));
     for (int i = 0; i < 4; ++i) forces[nodes[i].index()] += multipliers[0] * gradient[i];
   }
   for (const auto& [from, to, place] : rim_) {
@@ -127,7 +122,7 @@ void EnclosedVolume::add_forces(std::span<const Vec3> x, std::span<const double>
 template <class Take>
 void EnclosedVolume::for_blocks(std::span<const Vec3> x, double pressure, const Take& take) const {
   for (const auto& nodes : facets_) {
-    const Corners corners = corners_of(x, nodes);
+    const Corners corners = gather(x, nodes);
     for (int i = 0; i < 4; ++i)
       for (int j = i + 1; j < 4; ++j) take(nodes[i], nodes[j], Vec3(-pressure * cone_hessian(corners, i, j)));
   }

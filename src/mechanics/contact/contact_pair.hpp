@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <span>
-#include <vector>
 
 #include "core/ids.hpp"
 #include "core/vector.hpp"

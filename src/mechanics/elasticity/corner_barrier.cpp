@@ -1,6 +1,5 @@
 #include "mechanics/elasticity/corner_barrier.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "tissue/division.hpp"

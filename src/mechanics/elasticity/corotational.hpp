@@ -23,10 +23,6 @@ class Corotational final : public BatchLaw<Corotational, 8> {
   /// tissue. Throws std::domain_error if a rest shape is inverted.
   Corotational(const Tissue& tissue, std::vector<ElasticModuli> moduli, double shear_viscosity,
                Kernels kernels = chosen_kernels());
-  /// Make the law with equal moduli, times the `factors` of cells if given.
-  Corotational(const Tissue& tissue, const ElasticModuli& moduli, double shear_viscosity,
-               const std::vector<double>& factors = {}, Kernels kernels = chosen_kernels())
-      : Corotational(tissue, in_all_elements(tissue, moduli, factors), shear_viscosity, kernels) {}
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
   [[nodiscard]] double energy(const Step& step) const override;
@@ -36,7 +32,6 @@ class Corotational final : public BatchLaw<Corotational, 8> {
 
   [[nodiscard]] bool overbends() const override { return true; }
 
-  /// Return the input of the kernels.
   [[nodiscard]] CorotationalArrays kernel_arrays(const Step& step) const;
 
  private:

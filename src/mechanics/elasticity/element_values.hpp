@@ -1,7 +1,6 @@
 // Per-element values, for cells whose elements differ (layers).
 #pragma once
 
-#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -9,24 +8,6 @@
 #include "tissue/tissue.hpp"
 
 namespace plica {
-
-/// Give every element the value of its cell.
-template <class Value>
-std::vector<Value> of_cells(const Tissue& tissue, const std::vector<Value>& values) {
-  std::vector<Value> result;
-  result.reserve(tissue.elements.size());
-  for (const CellId cell : tissue.element_cell) result.push_back(values[cell.index()]);
-  return result;
-}
-
-/// Give all elements one value, times the factor of the cell if factors are given.
-template <class Value>
-std::vector<Value> in_all_elements(const Tissue& tissue, const Value& value, const std::vector<double>& factors) {
-  std::vector<Value> result(tissue.elements.size(), value);
-  if (!factors.empty())
-    for (std::size_t e = 0; e < result.size(); ++e) result[e] = factors[tissue.element_cell[e].index()] * value;
-  return result;
-}
 
 /// Values per element, inherited with their cells.
 template <class Value>

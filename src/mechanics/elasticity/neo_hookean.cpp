@@ -58,19 +58,7 @@ Mat3 deformation_gradient(const HexPoints& points, const HexPoints& rest, int g)
   return gauss_jacobian(points, g) * gauss_jacobian(rest, g).inverse();
 }
 
-std::vector<NeoHookeanMaterial> materials_of(const Tissue& tissue, const std::vector<double>& shear_moduli,
-                                             const std::vector<double>& relaxation_s) {
-  std::vector<NeoHookeanMaterial> materials;
-  for (std::size_t c = 0; c < shear_moduli.size(); ++c)
-    materials.push_back({shear_moduli[c], relaxation_s.empty() ? 0 : relaxation_s[c]});
-  return of_cells(tissue, materials);
-}
-
 }  // namespace
-
-NeoHookean::NeoHookean(const Tissue& tissue, const std::vector<double>& shear_moduli,
-                       const std::vector<double>& relaxation_s, Kernels kernels)
-    : NeoHookean(tissue, materials_of(tissue, shear_moduli, relaxation_s), kernels) {}
 
 NeoHookean::NeoHookean(const Tissue& tissue, std::vector<NeoHookeanMaterial> materials, Kernels kernels)
     : BatchLaw(tissue.elements, {tissue, tissue.elements}, kernels),

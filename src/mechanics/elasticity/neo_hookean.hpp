@@ -13,7 +13,6 @@
 
 namespace plica {
 
-/// Material of an element.
 struct NeoHookeanMaterial {
   double shear_modulus = 0;  // mu, kPa
   double relaxation_s = 0;   // tau; 0: no relaxation
@@ -26,9 +25,6 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8> {
   /// Make the law; `materials` per element, rest shapes of the elements of the tissue. Throws std::domain_error if one
   /// is inverted.
   NeoHookean(const Tissue& tissue, std::vector<NeoHookeanMaterial> materials, Kernels kernels = chosen_kernels());
-  /// Make the law; `shear_moduli` and `relaxation_s` per cell, the latter empty if no cell relaxes.
-  NeoHookean(const Tissue& tissue, const std::vector<double>& shear_moduli,
-             const std::vector<double>& relaxation_s = {}, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
   [[nodiscard]] double energy(const Step& step) const override;

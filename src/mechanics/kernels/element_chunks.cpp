@@ -1,6 +1,5 @@
 #include "mechanics/kernels/element_chunks.hpp"
 
-#include <algorithm>
 #include <bitset>
 
 #include "tissue/tissue.hpp"

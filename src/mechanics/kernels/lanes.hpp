@@ -62,7 +62,6 @@ using LooseLanes = Lanes;
 inline Lanes load_loose(const double* values) { return *reinterpret_cast<const LooseLanes*>(values); }
 inline void store_loose(Lanes a, double* values) { *reinterpret_cast<LooseLanes*>(values) = a; }
 
-/// Return square roots.
 inline Lanes root(Lanes a) {
 #if PLICA_LANES == 8
   return _mm512_sqrt_pd(a);
@@ -119,7 +118,6 @@ inline Mat transpose(const Mat& a) { return {{a.x.x, a.y.x, a.z.x}, {a.x.y, a.y.
 /// Return a^T v and a^T b.
 inline Vec turn_back(const Mat& a, const Vec& v) { return {dot(a.x, v), dot(a.y, v), dot(a.z, v)}; }
 inline Mat turn_back(const Mat& a, const Mat& b) { return {turn_back(a, b.x), turn_back(a, b.y), turn_back(a, b.z)}; }
-/// Return a b^T.
 inline Mat outer(const Vec& a, const Vec& b) { return {b.x * a, b.y * a, b.z * a}; }
 /// Return [a]x b and a [b]x.
 inline Mat cross(const Vec& a, const Mat& b) { return {cross(a, b.x), cross(a, b.y), cross(a, b.z)}; }

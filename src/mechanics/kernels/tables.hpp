@@ -20,9 +20,7 @@ template <class Arrays, int corners>
 struct ElementKernels {
   /// Add forces, nN; not finite if the energy is not.
   void (*add_forces)(const Arrays&, std::size_t first, std::size_t last, double* forces);
-  /// Add tangent times direction.
   void (*add_product)(const Arrays&, std::size_t first, std::size_t last, const double* direction, double* product);
-  /// Write the tangent of one batch.
   void (*write_blocks)(const Arrays&, std::size_t batch, TangentBlocks<corners>& blocks);
 };
 

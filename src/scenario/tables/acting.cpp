@@ -85,7 +85,6 @@ class ProfileCheck {
            "set both full_length_um and fade_um");
   }
 
-  /// Checks `middle` and `edge`.
   void check_ends() {
     const std::string chooser = path_ + ".shape";
     const bool is_flat = (profile_.shape.empty() || profile_.shape == "constant") && !has_taper();

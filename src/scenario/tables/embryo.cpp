@@ -1,7 +1,6 @@
 // [embryo]: reference geometry of the cell sheet. setup.cpp builds it.
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <set>
 
 #include "scenario/embryo_axes.hpp"

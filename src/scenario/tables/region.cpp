@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 #include <set>
 
@@ -152,9 +151,8 @@ bool in_strip(int place, int count, const std::optional<int>& wanted) {
   return !wanted || std::abs(2 * place - (count - 1)) < *wanted;
 }
 
-// `low`, `high`: extent of the tissue along x.
-bool selected(const RegionInput& region, std::size_t id, const Cell& cell, const Tissue& tissue, double low,
-              double high) {
+// `length`: extent of the tissue along x.
+bool selected(const RegionInput& region, std::size_t id, const Cell& cell, const Tissue& tissue, const Extent& length) {
   if (!region.face.empty()) {
     const auto& place = cell.grid_place;
     if (!place || place->face != meaning_of(words::sides, region.face) ||
@@ -165,15 +163,8 @@ bool selected(const RegionInput& region, std::size_t id, const Cell& cell, const
   if (!region.ids.empty() && std::ranges::find(region.ids, static_cast<int>(id)) == region.ids.end()) return false;
   const Vec3 centre = cell_centre(cell, tissue.rest_positions);
   if (!inside(region.angle_deg, std::atan2(centre.y(), -centre.z()) * 180 / std::numbers::pi)) return false;
-  if (!inside(region.length_percent, 100 * (centre.x() - low) / (high - low))) return false;
+  if (!inside(region.length_percent, 100 * (centre.x() - length.low) / (length.high - length.low))) return false;
   return inside(region.x_um, centre.x()) && inside(region.y_um, centre.y()) && inside(region.z_um, centre.z());
-}
-
-// Extent of the tissue along x.
-std::pair<double, double> extent_along(const Tissue& tissue) {
-  std::pair extent(std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity());
-  for (const Vec3& x : tissue.rest_positions) extent = {std::min(extent.first, x.x()), std::max(extent.second, x.x())};
-  return extent;
 }
 
 /// Remarks once on cells without a value of an array.
@@ -213,14 +204,13 @@ Diagnostic no_array(const Scenario& scenario, const std::string& key, const std:
 
 void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnostic>& errors) {
   const std::size_t cells = tissue.cells.size();
-  const auto extent = extent_along(tissue);
+  const Extent extent = extent_along(tissue);
   std::vector<int> from_midline;  // computed when a region needs it
   const std::function<const CellSet&(const std::string&)> resolve = [&](const std::string& name) -> const CellSet& {
     if (const auto known = tissue.regions.find(name); known != tissue.regions.end()) return known->second;
     const RegionInput& region = scenario.regions.at(name);
     CellSet set(cells, false);
-    for (std::size_t c = 0; c < cells; ++c)
-      set[c] = selected(region, c, tissue.cells[c], tissue, extent.first, extent.second);
+    for (std::size_t c = 0; c < cells; ++c) set[c] = selected(region, c, tissue.cells[c], tissue, extent);
     const auto combine = [&](const CellSet& other, auto operation) {
       std::transform(set.begin(), set.end(), other.begin(), set.begin(), operation);
     };

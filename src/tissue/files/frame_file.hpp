@@ -41,7 +41,6 @@ struct Frame {
   }
 };
 
-/// Surface of flat triangles.
 struct TriangleSurface {
   Vectors points;  // um
   std::vector<std::array<int, 3>> triangles;

@@ -75,7 +75,6 @@ TriangleSurface surface_in(const fs::path& file) {
   return surface;
 }
 
-/// Times and files of a collection.
 struct Collection {
   std::vector<double> times_s;
   std::vector<std::string> files;

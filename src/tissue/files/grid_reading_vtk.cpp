@@ -47,7 +47,6 @@ constexpr const char* what_is = "surface";
 template <>
 constexpr const char* what_is<vtkUnstructuredGrid> = "unstructured grid";
 
-/// Keeps the first error.
 class ErrorWindow : public vtkOutputWindow {
  public:
   static ErrorWindow* New();

@@ -45,7 +45,6 @@ struct NumberedTable {
   std::map<std::string, std::vector<double>> columns;
 };
 
-/// Tables of a vertex model in two or three dimensions.
 struct VertexModelTables {
   NumberedTable vertices;  // x, y and optionally z
   NumberedTable edges;     // half-edges along the outlines of faces: srce, trgt, face

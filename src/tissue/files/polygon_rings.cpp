@@ -104,7 +104,6 @@ std::vector<std::size_t> meeting_cells(const PolygonSurface& surface, const Cell
   return counts;
 }
 
-// The outline of the faces of one label.
 std::vector<std::size_t> outline_of(const PolygonSurface& surface, double label,
                                     const std::vector<std::size_t>& faces) {
   std::map<Edge, int> uses;

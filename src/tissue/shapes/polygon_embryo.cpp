@@ -8,12 +8,9 @@
 #include <memory>
 #include <numbers>
 #include <numeric>
-#include <optional>
 
-#include "tissue/mesh_input.hpp"
 #include "tissue/shapes/extrusion.hpp"
 #include "tissue/shapes/given_surface.hpp"
-#include "tissue/shapes/star_surface.hpp"
 #include "tissue/shapes/surface_polygons.hpp"
 
 namespace plica {

@@ -69,7 +69,6 @@ struct SurfaceTissue {
   std::vector<std::size_t> kept;  // faces that became cells
 };
 
-/// Return the values of the kept faces.
 CellArray of_kept(const CellArray& of_faces, const std::vector<std::size_t>& kept);
 
 /// Build one cell per face that is kept, in order: inward along the normals of that smooth surface, else along the mean

@@ -30,7 +30,6 @@ struct Periods {
   }
 };
 
-/// Polygon surface, closed or with boundary.
 struct PolygonSurface {
   Vectors vertices;                                // um
   std::vector<std::vector<std::size_t>> polygons;  // vertices of each, counter-clockwise seen from outside
@@ -45,7 +44,6 @@ struct PolygonEdge {
 
 inline constexpr std::size_t no_polygon = static_cast<std::size_t>(-1);
 
-/// Return the mean of the corners of a polygon.
 Vec3 mean_corner(const Vectors& vertices, const std::vector<std::size_t>& polygon);
 
 /// Return half the sum of (p_i - c) x (p_i+1 - c) about the mean c of the corners: the normal of the polygon times its

@@ -21,7 +21,6 @@ namespace plica {
 
 inline constexpr int largest_harmonic_degree = 16;
 
-/// Return the number of harmonics up to the degree.
 constexpr std::size_t harmonic_count(int degree) {
   return static_cast<std::size_t>(degree + 1) * static_cast<std::size_t>(degree + 1);
 }

@@ -1,6 +1,7 @@
 #include "mechanics/constraints/cell_volume.hpp"
 
 #include "support/constraint_law.hpp"
+#include "support/elements.hpp"
 #include "support/law_checks.hpp"
 
 namespace {
@@ -73,17 +74,17 @@ TEST(CellVolumes, PressuresHaveNoResultantAndNoTorque) {
 
 TEST(Dilatation, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 5);
-  check_derivatives(Dilatation(tissue, 3.0), tissue, 4);
+  check_derivatives(Dilatation(tissue, in_elements(tissue, 3.0), false), tissue, 4);
 }
 
 TEST(Dilatation, SemidefiniteTangentLeavesOutThePressure) {
   const Tissue tissue = distorted_block(two_cells, 2, 5);
-  check_semidefinite_tangent(Dilatation(tissue, 3.0), tissue, 4, true);
+  check_semidefinite_tangent(Dilatation(tissue, in_elements(tissue, 3.0), false), tissue, 4, true);
 }
 
 TEST(Dilatation, RestAndRigidMotionsHaveNoForce) {
   const Tissue tissue = distorted_block(two_cells, 2, 6);
-  const Dilatation law(tissue, 3.0);
+  const Dilatation law(tissue, in_elements(tissue, 3.0), false);
   EXPECT_LE(largest(forces_of(law, at_rest(tissue).step())), 1e-12);
   Random random(2);
   for (int k = 0; k < 10; ++k) EXPECT_LE(largest(forces_of(law, deformed(tissue, random.rotation()).step())), 1e-10);
@@ -92,7 +93,7 @@ TEST(Dilatation, RestAndRigidMotionsHaveNoForce) {
 // Cells that are held at another volume than their rest shapes': what their elements have of that is without force.
 TEST(Dilatation, IsAgainstTheVolumeThatCellsAreHeldAt) {
   Tissue tissue = distorted_block({40, 20, 40, {2, 1, 1}, {2, 1, 2}}, 2, 6);
-  const Dilatation at_own_volumes(tissue, 3.0, true);
+  const Dilatation at_own_volumes(tissue, in_elements(tissue, 3.0), true);
   for (Cell& cell : tissue.cells) cell.target_volume = 1.2 * cell_volume(tissue, cell, tissue.rest_positions);
   const std::unique_ptr<Law> law = at_own_volumes.grown(tissue, {});
   Motion motion = at_rest(tissue);
@@ -107,7 +108,7 @@ TEST(Dilatation, IsAgainstTheVolumeThatCellsAreHeldAt) {
 TEST(Dilatation, ScaledBrickHasThePressureOfItsBulkModulus) {
   const Tissue tissue = build_block({.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}});
   const double kappa = 3, s = 1.05;
-  const Dilatation law(tissue, kappa);
+  const Dilatation law(tissue, in_elements(tissue, kappa), false);
   Motion motion = at_rest(tissue);
   for (Vec3& x : motion.positions) x *= s;
   const double strain = s * s * s - 1;
@@ -124,7 +125,7 @@ TEST(Dilatation, ResistsOneElementGrowingAtAnothersCost) {
   const Tissue tissue = build_block(
       {.length_um = 20, .width_um = 20, .cell_height_um = 40, .cells = {1, 1, 1}, .elements_per_cell = {2, 1, 1}});
   const double kappa = 3;
-  const Dilatation law(tissue, kappa);
+  const Dilatation law(tissue, in_elements(tissue, kappa), false);
   Motion motion = at_rest(tissue);
   for (Vec3& x : motion.positions)
     if (x.x() == 0) x.x() = 1;  // of halves 10 um long: strains of 0.1 and -0.1

@@ -4,6 +4,7 @@
 #include "mechanics/energy.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/bodies.hpp"
+#include "support/elements.hpp"
 #include "support/law_checks.hpp"
 #include "support/loads.hpp"
 #include "support/models.hpp"
@@ -124,8 +125,8 @@ TEST(Friction, ABlockSticksBelowTheCoefficientAndSlidesAboveIt) {
     const Tissue& tissue = model.tissue;
     model.volumes.hold(false);
     const ElasticModuli stiff = ElasticModuli::from_young(100, 0);  // what is soft goes on creeping for long
-    model.laws.push_back(std::make_unique<Corotational>(tissue, stiff, 0));
-    model.laws.push_back(std::make_unique<Dilatation>(tissue, stiff.bulk_modulus()));
+    model.laws.push_back(std::make_unique<Corotational>(tissue, in_elements(tissue, stiff), 0));
+    model.laws.push_back(std::make_unique<Dilatation>(tissue, in_elements(tissue, stiff.bulk_modulus()), false));
     add_drag(model, drag);
     model.laws.push_back(std::make_unique<SelfContact>(rough(tissue)));
     Vectors loads(tissue.node_count(), Vec3::Zero());

@@ -3,6 +3,7 @@
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
+#include "support/elements.hpp"
 #include "support/law_checks.hpp"
 
 namespace {
@@ -48,18 +49,20 @@ TEST(Corotational, ElementsOfACellMayDiffer) {
 
 TEST(Corotational, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 5);
-  check_derivatives(Corotational(tissue, ElasticModuli::from_young(young, poisson), 0), tissue, 4);
+  check_derivatives(Corotational(tissue, in_elements(tissue, ElasticModuli::from_young(young, poisson)), 0), tissue, 4);
 }
 
 TEST(Corotational, DerivativesAgreeWithFiniteDifferencesWithViscosity) {
   const Tissue tissue = distorted_block(two_cells, 2, 6);
-  check_derivatives(Corotational(tissue, ElasticModuli::from_young(young, 0.45), 2), tissue, 4);
+  check_derivatives(Corotational(tissue, in_elements(tissue, ElasticModuli::from_young(young, 0.45)), 2), tissue, 4);
 }
 
 TEST(Corotational, SemidefiniteTangentLeavesOutTheTurningOfTheFrame) {
   const Tissue tissue = distorted_block(two_cells, 2, 5);
-  check_semidefinite_tangent(Corotational(tissue, ElasticModuli::from_young(young, poisson), 0), tissue, 6, true);
-  check_semidefinite_tangent(Corotational(tissue, ElasticModuli::from_young(young, 0.45), 2), tissue, 6, true);
+  check_semidefinite_tangent(Corotational(tissue, in_elements(tissue, ElasticModuli::from_young(young, poisson)), 0),
+                             tissue, 6, true);
+  check_semidefinite_tangent(Corotational(tissue, in_elements(tissue, ElasticModuli::from_young(young, 0.45)), 2),
+                             tissue, 6, true);
 }
 
 TEST(Corotational, EveryCellHasItsOwnModulus) {
@@ -67,8 +70,9 @@ TEST(Corotational, EveryCellHasItsOwnModulus) {
   const ElasticModuli moduli = ElasticModuli::from_young(young, poisson);
   const Motion motion = random_motion(tissue, 4, 3);
   const auto forces = [&](const std::vector<double>& factors) {
-    Vectors sum = forces_of(Corotational(tissue, moduli, 0, factors), motion.step());
-    const Vectors dilatation = forces_of(Dilatation(tissue, moduli.bulk_modulus(), false, factors), motion.step());
+    Vectors sum = forces_of(Corotational(tissue, in_elements(tissue, moduli, factors), 0), motion.step());
+    const Vectors dilatation =
+        forces_of(Dilatation(tissue, in_elements(tissue, moduli.bulk_modulus(), factors), false), motion.step());
     for (std::size_t n = 0; n < sum.size(); ++n) sum[n] += dilatation[n];
     return sum;
   };
@@ -82,22 +86,24 @@ TEST(Corotational, ModuliOfCellsAreInherited) {
   Model model(build_block({.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}}));
   const ElasticModuli moduli = ElasticModuli::from_young(young, poisson);
   const std::vector<double> factors = {1, 0.2, 3};
-  model.laws.push_back(std::make_unique<Corotational>(model.tissue, moduli, 0, factors));
-  model.laws.push_back(std::make_unique<Dilatation>(model.tissue, moduli.bulk_modulus(), false, factors));
+  model.laws.push_back(std::make_unique<Corotational>(model.tissue, in_elements(model.tissue, moduli, factors), 0));
+  model.laws.push_back(
+      std::make_unique<Dilatation>(model.tissue, in_elements(model.tissue, moduli.bulk_modulus(), factors), false));
   State state = rest_state(model);
   const Division division = divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 1}}});
   const std::vector<double> after = inherited(division, factors);
   ASSERT_EQ(after, (std::vector<double>{1, 0.2, 3, 0.2}));
   const Motion motion = random_motion(model.tissue, 3, 3);
   EXPECT_EQ(forces_of(*model.laws[0], motion.step()),
-            forces_of(Corotational(model.tissue, moduli, 0, after), motion.step()));
+            forces_of(Corotational(model.tissue, in_elements(model.tissue, moduli, after), 0), motion.step()));
   EXPECT_EQ(forces_of(*model.laws[1], motion.step()),
-            forces_of(Dilatation(model.tissue, moduli.bulk_modulus(), false, after), motion.step()));
+            forces_of(Dilatation(model.tissue, in_elements(model.tissue, moduli.bulk_modulus(), after), false),
+                      motion.step()));
 }
 
 TEST(Corotational, RestShapeHasNoForceAndNoEnergy) {
   const Tissue tissue = distorted_block(two_cells, 2, 7);
-  const Corotational law(tissue, ElasticModuli::from_young(young, poisson), 1);
+  const Corotational law(tissue, in_elements(tissue, ElasticModuli::from_young(young, poisson)), 1);
   const Motion rest = at_rest(tissue);
   EXPECT_LE(largest(forces_of(law, rest.step())), 1e-12);
   EXPECT_LE(law.energy(rest.step()), 1e-20);
@@ -107,8 +113,8 @@ TEST(Corotational, RestShapeHasNoForceAndNoEnergy) {
 TEST(Corotational, UniaxialStretchOfABrickGivesYoungsModulus) {
   const Tissue tissue = build_block(one_cell);
   const ElasticModuli moduli = ElasticModuli::from_young(young, poisson);
-  const Corotational elasticity(tissue, moduli, 0);
-  const Dilatation dilatation(tissue, moduli.bulk_modulus());
+  const Corotational elasticity(tissue, in_elements(tissue, moduli), 0);
+  const Dilatation dilatation(tissue, in_elements(tissue, moduli.bulk_modulus()), false);
   const double strain = 1e-7;
   const Mat3 F = Vec3(1 - poisson * strain, 1 - poisson * strain, 1 + strain).asDiagonal();
   const Motion motion = deformed(tissue, F);
@@ -132,7 +138,7 @@ TEST(Corotational, SimpleShearOfABrickGivesTheShearModulus) {
   Mat3 F = Mat3::Identity();
   F(0, 2) = gamma;
   const Motion motion = deformed(tissue, F);
-  const Vectors forces = forces_of(Corotational(tissue, moduli, 0), motion.step());
+  const Vectors forces = forces_of(Corotational(tissue, in_elements(tissue, moduli), 0), motion.step());
   const Vec3 top = force_on(tissue, forces, [](const Vec3& X) { return X.z() > 0; });
   EXPECT_NEAR(top.x(), -young / (2 * (1 + poisson)) * gamma * 400, 1e-6 * gamma * 400);
   EXPECT_NEAR(top.z(), 0, 1e-6 * gamma * 400);
@@ -143,8 +149,9 @@ TEST(Corotational, TangentAtRestWithDilatationIsTheElementsStiffness) {
   const Tissue tissue = distorted_block(one_cell, 2, 12);
   const ElasticModuli moduli = ElasticModuli::from_young(young, 0.45);
   const Motion rest = at_rest(tissue);
-  const Eigen::MatrixXd both = DenseTangent(Corotational(tissue, moduli, 0), rest.step()).matrix +
-                               DenseTangent(Dilatation(tissue, moduli.bulk_modulus()), rest.step()).matrix;
+  const Eigen::MatrixXd both =
+      DenseTangent(Corotational(tissue, in_elements(tissue, moduli), 0), rest.step()).matrix +
+      DenseTangent(Dilatation(tissue, in_elements(tissue, moduli.bulk_modulus()), false), rest.step()).matrix;
   const Mat24 K = incompatible_stiffness(tissue.element_rest_shape[0], moduli);
   for (int i = 0; i < 8; ++i)
     for (int j = 0; j < 8; ++j) {
@@ -158,7 +165,7 @@ TEST(Corotational, TangentAtRestWithDilatationIsTheElementsStiffness) {
 TEST(Corotational, EnergyOfAFiniteStretchIsThatOfTheBiotStrain) {
   const Tissue tissue = build_block(one_cell);
   const ElasticModuli moduli = ElasticModuli::from_young(young, poisson);
-  const Corotational law(tissue, moduli, 0);
+  const Corotational law(tissue, in_elements(tissue, moduli), 0);
   Random random(3);
   for (int k = 0; k < 5; ++k) {
     const Vec3 strain = random.vector(0.4);
@@ -174,7 +181,7 @@ TEST(Corotational, SimpleShearRateGivesTwiceViscosityTimesRate) {
   const double viscosity = 3, rate = 1e-6, duration = 0.5;
   const Tissue tissue = build_block(one_cell);
   // So soft that only the viscosity is felt.
-  const Corotational law(tissue, ElasticModuli::from_young(1e-12, poisson), viscosity);
+  const Corotational law(tissue, in_elements(tissue, ElasticModuli::from_young(1e-12, poisson)), viscosity);
   Mat3 F = Mat3::Identity();
   F(0, 2) = rate * duration;
   Motion motion = deformed(tissue, F);
@@ -196,14 +203,14 @@ TEST(Corotational, SimpleShearRateGivesTwiceViscosityTimesRate) {
 
 TEST(Corotational, ViscosityResistsNoUniformExpansion) {
   const Tissue tissue = build_block(one_cell);
-  const Corotational law(tissue, ElasticModuli::from_young(1e-12, poisson), 3);
+  const Corotational law(tissue, in_elements(tissue, ElasticModuli::from_young(1e-12, poisson)), 3);
   const Motion motion = deformed(tissue, 1.01 * Mat3::Identity());
   EXPECT_LE(largest(forces_of(law, motion.step())), 1e-10);
 }
 
 TEST(Corotational, ViscosityDoesNotResistTurning) {
   const Tissue tissue = distorted_block(two_cells, 2, 8);
-  const Corotational law(tissue, ElasticModuli::from_young(young, poisson), 100);
+  const Corotational law(tissue, in_elements(tissue, ElasticModuli::from_young(young, poisson)), 100);
   Random random(4);
   for (int k = 0; k < 10; ++k) {
     Motion motion = deformed(tissue, random.rotation());
@@ -216,7 +223,8 @@ TEST(Corotational, ViscosityDoesNotResistTurning) {
 
 TEST(Corotational, InternalForcesHaveNoResultantAndNoTorque) {
   const Tissue tissue = distorted_block(two_cells, 2, 9);
-  expect_no_resultant_and_no_torque(Corotational(tissue, ElasticModuli::from_young(young, poisson), 2), tissue, 4);
+  expect_no_resultant_and_no_torque(
+      Corotational(tissue, in_elements(tissue, ElasticModuli::from_young(young, poisson)), 2), tissue, 4);
 }
 
 TEST(Corotational, StiffnessIsPositiveButForRigidMotions) {
@@ -243,7 +251,8 @@ TEST(Corotational, MeanGradientsGiveAUniformDeformationBack) {
 TEST(Corotational, RefusesAnInvertedRestShape) {
   Tissue tissue = build_block(one_cell);
   for (Vec3& X : tissue.element_rest_shape[0]) X.z() = -X.z();
-  EXPECT_THROW(Corotational(tissue, ElasticModuli::from_young(young, poisson), 0), std::domain_error);
+  EXPECT_THROW(Corotational(tissue, in_elements(tissue, ElasticModuli::from_young(young, poisson)), 0),
+               std::domain_error);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "mechanics/elasticity/hexahedron_stiffness.hpp"
 #include "solver/step/backward_difference.hpp"
 #include "support/divided.hpp"
+#include "support/elements.hpp"
 #include "support/law_checks.hpp"
 
 namespace {
@@ -12,9 +13,7 @@ namespace {
 const BlockShape one_cell{.length_um = 20, .width_um = 30, .cell_height_um = 40, .cells = {1, 1, 1}};
 
 NeoHookean law_of(const Tissue& tissue, double mu, double relaxation_s = 0, Kernels kernels = chosen_kernels()) {
-  const std::size_t cells = tissue.cells.size();
-  return {tissue, std::vector<double>(cells, mu),
-          relaxation_s > 0 ? std::vector<double>(cells, relaxation_s) : std::vector<double>(), kernels};
+  return {tissue, std::vector<NeoHookeanMaterial>(tissue.elements.size(), {mu, relaxation_s}), kernels};
 }
 
 /// First Piola-Kirchhoff stress of a brick of one cell: the forces on its faces over their areas at rest.
@@ -44,7 +43,7 @@ TEST(NeoHookean, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 5);
   check_derivatives(law_of(tissue, 0.4), tissue, 3);
   check_derivatives(law_of(tissue, 0.4, 2), tissue, 3);
-  const NeoHookean law(tissue, {0.4, 0.1}, {2, 0});
+  const NeoHookean law(tissue, materials_of(tissue, {0.4, 0.1}, {2, 0}));
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const Motion motion = flowing_motion(law, tissue, 3, seed);
     expect_forces_are_minus_energy_gradient(law, motion, 1e-6);
@@ -106,7 +105,7 @@ TEST(NeoHookean, WithDilatationSmallStrainsHaveTheModuli) {
   const Tissue tissue = build_block(one_cell);
   const ElasticModuli moduli = ElasticModuli::from_young(1, 0.3);
   const NeoHookean law = law_of(tissue, moduli.shear_modulus);
-  const Dilatation dilatation(tissue, moduli.lame_lambda);
+  const Dilatation dilatation(tissue, in_elements(tissue, moduli.lame_lambda), false);
   const double strain = 1e-6;
   const Motion motion = deformed(tissue, Vec3(1 + strain, 1 - 0.3 * strain, 1 - 0.3 * strain).asDiagonal());
   Vectors forces = forces_of(law, motion.step());
@@ -236,7 +235,7 @@ TEST(NeoHookean, FlowKeepsVolume) {
 TEST(NeoHookean, DaughtersHaveTheirMothersFlow) {
   Model model(build_block({.length_um = 100, .width_um = 20, .cell_height_um = 40, .cells = {5, 1, 1}}));
   const std::vector<double> moduli = {0.4, 0.3, 0.2, 0.1, 0.5}, relaxation = {3, 2, 1, 0, 5};
-  model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, moduli, relaxation));
+  model.laws.push_back(std::make_unique<NeoHookean>(model.tissue, materials_of(model.tissue, moduli, relaxation)));
   State state = rest_state(model);
   Mat3 F = Vec3(1.4, 0.8, 0.9).asDiagonal();
   F(0, 2) = 0.3;

@@ -1,6 +1,7 @@
 #include "mechanics/elasticity/shape_memory.hpp"
 
 #include "mechanics/elasticity/corotational.hpp"
+#include "support/elements.hpp"
 #include "support/law_checks.hpp"
 
 namespace {
@@ -187,8 +188,8 @@ TEST(ShapeMemory, ViscosityIsThatOfTheCorotationalLaw) {
   for (const double ahead : {0.0, 0.4}) {
     motion.ahead = ahead;
     const Vectors found = forces_of(law, motion.step());
-    const Vectors expected =
-        forces_of(Corotational(tissue, ElasticModuli::from_young(1e-12, 0.3), viscosity), motion.step());
+    const Vectors expected = forces_of(
+        Corotational(tissue, in_elements(tissue, ElasticModuli::from_young(1e-12, 0.3)), viscosity), motion.step());
     for (std::size_t n = 0; n < 8; ++n) EXPECT_LE((found[n] - expected[n]).norm(), 1e-5 * largest(expected));
   }
 }
