@@ -47,7 +47,12 @@ struct Step {
   template <class Quantity>
   [[nodiscard]] auto before(const Quantity& q) const -> decltype(q(previous_positions)) {
     if (ahead == 0) return q(previous_positions);
-    return (1 + ahead) * q(previous_positions) - ahead * q(earlier_positions);
+    return extrapolated(q(previous_positions), q(earlier_positions));
+  }
+  /// Return q_before from the values at the beginning of this step and of the step before.
+  template <class Value>
+  [[nodiscard]] Value extrapolated(const Value& previous, const Value& earlier) const {
+    return (1 + ahead) * previous - ahead * earlier;
   }
 };
 
@@ -150,7 +155,8 @@ class Law {
   }
 
   /// Return the internal state before the first step, or at the end of a converged step (which may still be rejected
-  /// for its error; the law is not notified).
+  /// for its error; the law is not notified). A law that remembers what changes at a rate keeps it twice, for the
+  /// beginning of this step and of the step before, since steps of second order need both (Step::extrapolated).
   [[nodiscard]] virtual std::vector<double> first_internal(const Tissue& /*tissue*/) const { return {}; }
   [[nodiscard]] virtual std::vector<double> next_internal(const Step& step) const {
     return {step.internal.begin(), step.internal.end()};

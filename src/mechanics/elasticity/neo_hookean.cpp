@@ -113,7 +113,7 @@ Mat3 NeoHookean::flowed(std::span<const double> internal, ElementId element, int
 
 Mat3 NeoHookean::flowed_before(std::size_t e, int g, const Step& step) const {
   const auto [now, earlier] = memory(step.internal);
-  return (1 + step.ahead) * symmetric_at(first_of(now, e, g)) - step.ahead * symmetric_at(first_of(earlier, e, g));
+  return step.extrapolated(symmetric_at(first_of(now, e, g)), symmetric_at(first_of(earlier, e, g)));
 }
 
 double NeoHookean::energy(const Step& step) const {
