@@ -119,7 +119,7 @@ TEST(PatternKeys, WhatIsWrongIsSaidWithItsKey) {
   expect(act("profile = { shape = \"array\", array = \"twi\", from = 1, to = 1 }"),
          "contraction.a.profile.to: equals `from`; set `to` to a different value");
   expect(act("profile = { shape = \"gaussian\", sigma_um = 9, array = \"twi\" }"),
-         "contraction.a.profile.array: is not used with shape \"gaussian\"; remove array, or set shape to \"array\"");
+         "contraction.a.profile.array: is not used with shape \"gaussian\"; remove it, or set shape to \"array\"");
   expect(act("profile = { shape = \"array\", array = \"twi\", from = 0, to = 1, axis = \"along\" }"),
          "contraction.a.profile.axis: is not used with shape \"array\"; remove axis");
   expect(

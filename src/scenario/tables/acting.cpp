@@ -15,34 +15,67 @@ using enum Places;
 
 /// A profile key used with one shape, and with axes of lengths, angles, or any.
 struct ProfileKey {
-  const char* key;
+  std::string_view key;
   const char* shape;
   Places places;
-  std::variant<std::optional<double> ProfileInput::*, std::vector<double> ProfileInput::*> field;
-  const char* remedy = nullptr;  // if it lacks; null: it is in an alternative unit
+  std::variant<std::optional<double> ProfileInput::*, std::vector<double> ProfileInput::*, std::string ProfileInput::*>
+      field;
+  Allowed allowed;
+  std::string_view meaning;
+  const char* remedy;                // if it lacks; null: it is in an alternative unit
+  std::string_view instead_of = "";  // the key whose unit it has not
+
+  /// Its place below the profile, such as ".sigma_um".
+  [[nodiscard]] std::string below_profile() const {
+    return std::string((instead_of.empty() ? key : instead_of).substr(std::string_view("profile").size()));
+  }
 };
 
-constexpr ProfileKey profile_keys[] = {
-    {"half_width_um", "linear", lengths, &ProfileInput::half_width_um,
-     "set half_width_um to the distance at which the factor reaches edge, a number > 0"},
-    {"half_width_deg", "linear", angles, &ProfileInput::half_width_deg,
-     "set half_width_deg to the angle at which the factor reaches edge, a number > 0"},
-    {"sigma_um", "gaussian", lengths, &ProfileInput::sigma_um, "set sigma_um or sigma_cells to a number > 0"},
-    {"sigma_um", "gaussian", lengths, &ProfileInput::sigma_cells},
-    {"sigma_deg", "gaussian", angles, &ProfileInput::sigma_deg, "set sigma_deg to a number > 0"},
-    {"full_cells", "plateau", lengths, &ProfileInput::full_cells,
-     "set full_cells to the number of cells in the plateau"},
-    {"fade_cells", "plateau", lengths, &ProfileInput::fade_cells,
-     "set fade_cells to the width of the taper in cells (0: none)"},
-    {"full_deg", "plateau", angles, &ProfileInput::full_deg, "set full_deg to the angular width of the plateau"},
-    {"fade_deg", "plateau", angles, &ProfileInput::fade_deg,
-     "set fade_deg to the width of the taper in degrees (0: none)"},
-    {"from", "array", any, &ProfileInput::from, "set `from` to the array value at which the factor is edge (0)"},
-    {"to", "array", any, &ProfileInput::to, "set `to` to the array value at which the factor is middle (1)"},
-    {"at_um", "table", lengths, &ProfileInput::at_um, "set at_um or at_cells to the positions of the points"},
-    {"at_um", "table", lengths, &ProfileInput::at_cells},
-    {"at_deg", "table", angles, &ProfileInput::at_deg, "set at_deg to the angles of the points"},
-    {"factor", "table", any, &ProfileInput::factor, "set factor to one value per position"}};
+const std::vector<ProfileKey>& profile_keys() {
+  using P = ProfileInput;
+  static const std::vector<ProfileKey> keys = {
+      {"profile.half_width_um", "linear", lengths, &P::half_width_um, positive,
+       "`linear`: distance at which the factor reaches `edge` (µm).",
+       "set half_width_um to the distance at which the factor reaches edge, a number > 0"},
+      {"profile.half_width_deg", "linear", angles, &P::half_width_deg, positive, "Likewise in degrees.",
+       "set half_width_deg to the angle at which the factor reaches edge, a number > 0"},
+      {"profile.sigma_um", "gaussian", lengths, &P::sigma_um, positive, "`gaussian`: standard deviation σ (µm).",
+       "set sigma_um or sigma_cells to a number > 0"},
+      {"profile.sigma_cells", "gaussian", lengths, &P::sigma_cells, positive,
+       "σ in cells: mean cell width of the region along the axis of d.", nullptr, "profile.sigma_um"},
+      {"profile.sigma_deg", "gaussian", angles, &P::sigma_deg, positive, "σ in degrees.",
+       "set sigma_deg to a number > 0"},
+      {"profile.full_cells", "plateau", lengths, &P::full_cells, positive,
+       "`plateau`: full width with factor `middle` (cells).", "set full_cells to the number of cells in the plateau"},
+      {"profile.fade_cells", "plateau", lengths, &P::fade_cells, not_negative,
+       "`plateau`: width of the taper on either side (cells); 0: none.",
+       "set fade_cells to the width of the taper in cells (0: none)"},
+      {"profile.full_deg", "plateau", angles, &P::full_deg, positive, "`plateau`: full width (degrees).",
+       "set full_deg to the angular width of the plateau"},
+      {"profile.fade_deg", "plateau", angles, &P::fade_deg, not_negative,
+       "`plateau`: width of the taper (degrees); 0: none.",
+       "set fade_deg to the width of the taper in degrees (0: none)"},
+      {"profile.at_um", "table", lengths, &P::at_um, anything,
+       "`table`: positions from the centre (µm), increasing; the factor is constant beyond the ends. Without "
+       "negative values: distances on both sides. Otherwise positive is right or posterior.",
+       "set at_um or at_cells to the positions of the points"},
+      {"profile.at_cells", "table", lengths, &P::at_cells, anything, "The positions in cells, as for `sigma_cells`.",
+       nullptr, "profile.at_um"},
+      {"profile.at_deg", "table", angles, &P::at_deg, between(-180, 180), "The positions in degrees.",
+       "set at_deg to the angles of the points"},
+      {"profile.factor", "table", any, &P::factor, not_negative, "`table`: factor at each position.",
+       "set factor to one value per position"},
+      {"profile.array", "array", any, &P::array, anything,
+       "`array`: cell array that sets the factor, linear between `from` and `to`.",
+       "set array to a cell array of the embryo"},
+      {"profile.from", "array", any, &P::from, anything,
+       "Array value at which, and before which, the factor is `edge`.",
+       "set `from` to the array value at which the factor is edge (0)"},
+      {"profile.to", "array", any, &P::to, anything,
+       "Array value at which, and beyond which, it is `middle`; below `from` for a decreasing factor.",
+       "set `to` to the array value at which the factor is middle (1)"}};
+  return keys;
+}
 
 class ProfileCheck {
  public:
@@ -58,11 +91,8 @@ class ProfileCheck {
       drop(path_ + ".axis", profile_.axis, {}, path_ + ".shape", with_shape(), "remove axis", input_);
     else if (profile_.axis.empty())
       profile_.axis = "across";
-    for (const ProfileKey& one : profile_keys)
+    for (const ProfileKey& one : profile_keys())
       std::visit([&](auto field) { drop_unused(one, profile_.*field); }, one.field);
-    if (profile_.shape != "array")
-      drop(path_ + ".array", profile_.array, {}, path_ + ".shape", with_shape(),
-           "remove array, or set shape to \"array\"", input_);
     if (profile_.axis != "angle")
       drop(path_ + ".centre_deg", profile_.centre_deg, {}, path_ + ".axis", "requires axis \"angle\"",
            "remove centre_deg, or set axis to \"angle\"", input_);
@@ -96,8 +126,8 @@ class ProfileCheck {
   }
 
   void check_no_shape() {
-    if (!profile_.axis.empty() || !profile_.array.empty() || profile_.centre_deg ||
-        std::ranges::any_of(profile_keys, [&](const ProfileKey& one) { return is_set(one); }))
+    if (!profile_.axis.empty() || profile_.centre_deg ||
+        std::ranges::any_of(profile_keys(), [&](const ProfileKey& one) { return is_set(one); }))
       report(".shape", "is missing",
              fmt::format("set shape to one of: {}", fmt::join(words_of(words::profile_shapes), " | ")));
   }
@@ -112,7 +142,7 @@ class ProfileCheck {
 
   template <class Field>
   void drop_unused(const ProfileKey& one, Field& field) {
-    const std::string key = path_ + "." + one.key;
+    const std::string key = path_ + one.below_profile();
     if (profile_.shape != one.shape)
       drop(key, field, {}, path_ + ".shape", with_shape(), fmt::format("remove it, or set shape to \"{}\"", one.shape),
            input_);
@@ -131,15 +161,12 @@ class ProfileCheck {
 
   void check_needed() {
     const ProfileInput& p = profile_;
-    if (p.shape == "array" && p.array.empty())
-      report(".array", "is missing", "set array to a cell array of the embryo");
-    for (const ProfileKey& one : profile_keys) {
-      const auto sets_it = [&](const ProfileKey& other) {
-        return std::string_view(other.key) == one.key && is_set(other);
-      };
+    for (const ProfileKey& one : profile_keys()) {
+      const std::string key = one.below_profile();
+      const auto sets_it = [&](const ProfileKey& other) { return other.below_profile() == key && is_set(other); };
       if (p.shape == one.shape && fits_axis(one) && one.remedy != nullptr &&
-          std::ranges::none_of(profile_keys, sets_it))
-        report(fmt::format(".{}", one.key), "is missing", one.remedy);
+          std::ranges::none_of(profile_keys(), sets_it))
+        report(key, "is missing", one.remedy);
     }
     if (p.shape == "array" && p.from && p.from == p.to) report(".to", "equals `from`", "set `to` to a different value");
     if (p.shape == "table") check_table();
@@ -218,33 +245,9 @@ void add_strengths(std::vector<KeyRow>& rows, const KeyRows<ActingInput>& table)
           "Angle of the centre; 0: ventral (default), 90: right.");
   profile("profile.middle", &ProfileInput::middle, not_negative, "Factor at the centre; default 1.");
   profile("profile.edge", &ProfileInput::edge, not_negative, "Factor far away; default 0.");
-  profile("profile.half_width_um", &ProfileInput::half_width_um, positive,
-          "`linear`: distance at which the factor reaches `edge` (µm).");
-  profile("profile.half_width_deg", &ProfileInput::half_width_deg, positive, "Likewise in degrees.");
-  profile("profile.sigma_um", &ProfileInput::sigma_um, positive, "`gaussian`: standard deviation σ (µm).");
-  profile("profile.sigma_cells", &ProfileInput::sigma_cells, positive,
-          "σ in cells: mean cell width of the region along the axis of d.", {.instead_of = "profile.sigma_um"});
-  profile("profile.sigma_deg", &ProfileInput::sigma_deg, positive, "σ in degrees.");
-  profile("profile.full_cells", &ProfileInput::full_cells, positive,
-          "`plateau`: full width with factor `middle` (cells).");
-  profile("profile.fade_cells", &ProfileInput::fade_cells, not_negative,
-          "`plateau`: width of the taper on either side (cells); 0: none.");
-  profile("profile.full_deg", &ProfileInput::full_deg, positive, "`plateau`: full width (degrees).");
-  profile("profile.fade_deg", &ProfileInput::fade_deg, not_negative,
-          "`plateau`: width of the taper (degrees); 0: none.");
-  profile("profile.at_um", &ProfileInput::at_um, anything,
-          "`table`: positions from the centre (µm), increasing; the factor is constant beyond the ends. Without "
-          "negative values: distances on both sides. Otherwise positive is right or posterior.");
-  profile("profile.at_cells", &ProfileInput::at_cells, anything, "The positions in cells, as for `sigma_cells`.",
-          {.instead_of = "profile.at_um"});
-  profile("profile.at_deg", &ProfileInput::at_deg, between(-180, 180), "The positions in degrees.");
-  profile("profile.factor", &ProfileInput::factor, not_negative, "`table`: factor at each position.");
-  profile("profile.array", &ProfileInput::array, anything,
-          "`array`: cell array that sets the factor, linear between `from` and `to`.");
-  profile("profile.from", &ProfileInput::from, anything,
-          "Array value at which, and before which, the factor is `edge`.");
-  profile("profile.to", &ProfileInput::to, anything,
-          "Array value at which, and beyond which, it is `middle`; below `from` for a decreasing factor.");
+  for (const ProfileKey& one : profile_keys())
+    std::visit([&](auto field) { profile(one.key, field, one.allowed, one.meaning, {.instead_of = one.instead_of}); },
+               one.field);
   profile("profile.full_length_um", &ProfileInput::full_length_um, positive,
           "Taper along x: full factor on this length about the centre (µm).");
   profile("profile.fade_um", &ProfileInput::fade_um, positive,
