@@ -81,7 +81,7 @@ int run_here(const Study& study, StudyDirectory& directory, const StudyOptions& 
 
 int run_on_slurm(const Study& study, StudyDirectory& directory, const StudyOptions& options, Clock::time_point start) {
   if (!options.quiet) fmt::print(stderr, "running the first point on this machine to estimate the cost\n");
-  const SlurmSubmission plan = submit_to_slurm(study, directory, {options.sbatch, 2}, interrupted);
+  const SlurmSubmission plan = submit_to_slurm(study, directory, options.sbatch, interrupted);
   if (interrupted() || plan.tasks == 0) return ended(study, directory, options, start);
   if (!options.quiet)
     fmt::print(

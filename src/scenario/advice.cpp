@@ -10,6 +10,7 @@
 
 #include "core/units.hpp"
 #include "measure/bending_error.hpp"
+#include "measure/cells.hpp"
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/elasticity/shape_memory.hpp"
 #include "scenario/acting.hpp"
@@ -195,13 +196,8 @@ double half_width_um(const ActingInput& input, const Tissue& tissue, const std::
   for (std::size_t c = 0; c < pattern.cells.size(); ++c) {
     if (!pattern.cells[c]) continue;
     farthest = std::max(farthest, (1 - pattern.strengths[c]) * far_um);
-    const Cell& cell = tissue.cells[c];
-    volume += cell_volume(tissue, cell, tissue.rest_positions);
-    for (std::size_t i = 0; i < cell.sides(); ++i)
-      height += (tissue.rest_positions[cell.apical_corners()[i].index()] -
-                 tissue.rest_positions[cell.basal_corners()[i].index()])
-                    .norm() /
-                static_cast<double>(cell.sides());
+    volume += cell_volume(tissue, tissue.cells[c], tissue.rest_positions);
+    height += cell_height(tissue.cells[c], tissue.rest_positions);
   }
   return farthest + 0.5 * std::sqrt(volume / height);
 }

@@ -139,6 +139,14 @@ std::string value_in_toml(const toml::node& node) {
   return "";  // dates, which scenarios do not use
 }
 
+std::string word_in_toml(const std::string& text) {
+  try {
+    if (toml::parse("v = " + text).size() == 1) return text;
+  } catch (const toml::parse_error&) {
+  }
+  return in_toml(text);
+}
+
 std::vector<std::pair<std::string, const toml::node*>> in_order(const toml::table& table) {
   std::vector<std::pair<std::string, const toml::node*>> rows;
   for (const auto& [key, node] : table) rows.emplace_back(key.str(), &node);

@@ -44,6 +44,9 @@ toml::table parse_toml(const std::string& file, const std::string& text);
 /// Writes a value in TOML, on one line.
 std::string value_in_toml(const toml::node& node);
 
+/// Returns a value in TOML as it is, and a bare word as a text in TOML.
+std::string word_in_toml(const std::string& text);
+
 /// Returns the keys of a table in file order.
 std::vector<std::pair<std::string, const toml::node*>> in_order(const toml::table& table);
 

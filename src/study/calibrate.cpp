@@ -20,6 +20,7 @@
 #include "scenario/print.hpp"
 #include "scenario/schema.hpp"
 #include "scenario/setup.hpp"
+#include "scenario/toml_reader.hpp"
 #include "study/quiet_run.hpp"
 
 namespace plica {
@@ -217,13 +218,7 @@ std::string base_of(const ScenarioSource& source, const std::string& file) {
 // Convert "key=word" of the command line to a line of TOML.
 std::string line_of(const std::string& override) {
   const std::size_t equals = override.find('=');
-  const std::string key = override.substr(0, equals), value = override.substr(equals + 1);
-  try {
-    (void)toml::parse("v = " + value);
-    return fmt::format("{} = {}\n", key, value);
-  } catch (const toml::parse_error&) {  // a bare word
-    return fmt::format("{} = {}\n", key, in_toml(value));
-  }
+  return fmt::format("{} = {}\n", override.substr(0, equals), word_in_toml(override.substr(equals + 1)));
 }
 
 std::string comment(const CalibrationProblem& problem, const Calibration& calibration) {

@@ -195,15 +195,6 @@ Values drawn(const StudyInput& study) {
   return points;
 }
 
-// Convert a CSV field (TOML, or a bare word) to TOML.
-std::string in_toml_or_word(const std::string& field) {
-  try {
-    if (toml::parse("v = " + field).size() == 1) return field;
-  } catch (const toml::parse_error&) {
-  }
-  return in_toml(field);
-}
-
 // Number of points without randomness (every spread is 0): their replicates are one run.
 std::size_t points_without_spread(const StudyDesign& design, std::map<std::string, double> spreads) {
   return static_cast<std::size_t>(std::ranges::count_if(design.runs, [&](const StudyPoint& point) {
@@ -253,7 +244,7 @@ StudyDesign design_of_points(const std::string& file, const std::string& text) {
       throw ScenarioError({{file, static_cast<int>(r) + 1, "", fmt::format("has {} values", rows[r].size()),
                             fmt::format("give {}, one per key of the first line", design.keys.size())}});
     StudyPoint point{static_cast<int>(r), 1, {}, {}};
-    for (const std::string& field : rows[r]) point.values.push_back(in_toml_or_word(field));
+    for (const std::string& field : rows[r]) point.values.push_back(word_in_toml(field));
     design.runs.push_back(std::move(point));
   }
   return design;

@@ -27,6 +27,7 @@ constexpr double task_s = 600;            // target duration of a task: long com
 constexpr std::size_t least_tasks = 8;    // also for short runs: for as many machines
 constexpr std::size_t most_tasks = 1000;  // Slurm's usual largest array
 constexpr int most_restarts = 20;         // of a task that runs into its limit
+constexpr int most_resubmissions = 2;     // of runs without a result
 
 fs::path folder(const StudyDirectory& directory) { return fs::absolute(directory.path()) / "slurm"; }
 
@@ -74,9 +75,9 @@ exec {}
                      program(folder, "gather"));
 }
 
-std::string submit(std::vector<std::string> words, const SlurmOptions& options) {
+std::string submit(std::vector<std::string> words, const std::vector<std::string>& sbatch) {
   words.insert(words.begin(), {"sbatch", "--parsable"});
-  words.insert(words.begin() + 2, options.sbatch.begin(), options.sbatch.end());
+  words.insert(words.begin() + 2, sbatch.begin(), sbatch.end());
   const CommandResult result = run_command(words);
   if (result.status == -1) throw UsageError("sbatch cannot be run; submit from a machine that has Slurm's commands");
   std::string number = result.output.substr(0, result.output.find_first_of(";\n"));
@@ -94,7 +95,8 @@ Json jobs_in(const StudyDirectory& directory) {
   }
 }
 
-void submit_open(const StudyDirectory& directory, const SlurmOptions& options, int attempt, SlurmSubmission& plan) {
+void submit_open(const StudyDirectory& directory, const std::vector<std::string>& sbatch, int attempt,
+                 SlurmSubmission& plan) {
   const std::vector<std::size_t> open = directory.open_runs();
   const fs::path here = folder(directory);
   plan.runs = open.size();
@@ -110,19 +112,18 @@ void submit_open(const StudyDirectory& directory, const SlurmOptions& options, i
   fs::remove(here / "ended", error);
   plan.array = submit({fmt::format("--array=0-{}", plan.tasks - 1), "--output=" + (here / "log" / "%A_%a.txt").string(),
                        (here / "task.sh").string()},
-                      options);
+                      sbatch);
   plan.gather = submit({"--dependency=afterany:" + plan.array, "--output=" + (here / "log" / "gather_%j.txt").string(),
                         (here / "gather.sh").string()},
-                       options);
-  const Json jobs = {{"array", plan.array},        {"gather", plan.gather},    {"attempt", attempt},
-                     {"retries", options.retries}, {"sbatch", options.sbatch}, {"run_s", plan.run_s},
-                     {"memory_MB", plan.memory_MB}};
+                       sbatch);
+  const Json jobs = {{"array", plan.array}, {"gather", plan.gather}, {"attempt", attempt},
+                     {"sbatch", sbatch},    {"run_s", plan.run_s},   {"memory_MB", plan.memory_MB}};
   write_file(here / "jobs.json", jobs.dump(2) + '\n');
 }
 
 }  // namespace
 
-SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, const SlurmOptions& options,
+SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, const std::vector<std::string>& sbatch,
                                 const std::function<bool()>& stop) {
   make_directory(folder(directory) / "log");
   std::error_code ignored;
@@ -144,7 +145,7 @@ SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, c
     write_file(folder(directory) / "ended", "");
     return plan;
   }
-  submit_open(directory, options, 0, plan);
+  submit_open(directory, sbatch, 0, plan);
   return plan;
 }
 
@@ -166,11 +167,10 @@ std::string go_on_on_slurm(const StudyDirectory& directory) {
   const Json jobs = jobs_in(directory);
   const int attempt = jobs.value("attempt", 0);
   const bool is_cancelled = is_there(folder(directory) / "cancelled");
-  if (missing > 0 && !is_cancelled && attempt < jobs.value("retries", 0)) {
+  if (missing > 0 && !is_cancelled && attempt < most_resubmissions) {
     SlurmSubmission plan;
     plan.run_s = jobs.value("run_s", 0.0), plan.memory_MB = jobs.value("memory_MB", 1000);
-    submit_open(directory, {jobs.value("sbatch", std::vector<std::string>{}), jobs.value("retries", 0)}, attempt + 1,
-                plan);
+    submit_open(directory, jobs.value("sbatch", std::vector<std::string>{}), attempt + 1, plan);
     return fmt::format("{} runs have no result; resubmitted as job {}", missing, plan.array);
   }
   write_file(folder(directory) / "ended", "");

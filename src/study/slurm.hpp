@@ -14,11 +14,6 @@
 
 namespace plica {
 
-struct SlurmOptions {
-  std::vector<std::string> sbatch;  // additional options of sbatch, as --partition=long
-  int retries = 2;                  // resubmissions of missing runs by the collecting job
-};
-
 struct SlurmSubmission {
   std::size_t runs = 0, tasks = 0, runs_a_task = 0;
   double run_s = 0;           // measured duration of a run
@@ -28,13 +23,13 @@ struct SlurmSubmission {
 };
 
 /// Make the first run without a row on this machine, to measure its cost, and submit the others, if any. Throws
-/// UsageError with the message of Slurm if it rejects the jobs.
-SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, const SlurmOptions& options,
+/// UsageError with the message of Slurm if it rejects the jobs. `sbatch`: its additional options, as --partition=long.
+SlurmSubmission submit_to_slurm(const Study& study, StudyDirectory& directory, const std::vector<std::string>& sbatch,
                                 const std::function<bool()>& stop);
 
 std::vector<std::size_t> runs_of_task(const StudyDirectory& directory, int task);
 
-/// Resubmit runs without a row, `retries` times at most; called by the last job when the table is written. Returns a
+/// Resubmit runs without a row, twice at most; called by the last job when the table is written. Returns a
 /// sentence about what was done.
 std::string go_on_on_slurm(const StudyDirectory& directory);
 

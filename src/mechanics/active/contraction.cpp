@@ -109,7 +109,7 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
 double Contraction::activity(CellId cell, double delay_s, double time_s, std::span<const double> internal) const {
   const double part = pattern_.remaining(cell, time_s);
   if (const auto given = GivenActivities(internal).of(cell)) return part * *given;
-  return part * activity(delay_s, time_s) * pattern_.pulse(cell, time_s);
+  return part * program_.delayed_at(delay_s, time_s) * pattern_.pulse(cell, time_s);
 }
 
 double Contraction::activity(const Spring& spring, const Step& step) const {

@@ -75,8 +75,6 @@ class Contraction final : public Law {
   }
 
   [[nodiscard]] const Program& program() const { return program_; }
-  /// Return the activity for springs with a delay: the program `delay_s` earlier, 0 before its time 0.
-  [[nodiscard]] double activity(double delay_s, double time_s) const { return program_.delayed_at(delay_s, time_s); }
   /// Return the time at which the last spring reaches the end of the program, s.
   [[nodiscard]] double last_program_point_s() const { return program_.delayed_points_s(delays_s()).back(); }
   [[nodiscard]] bool is_active() const override { return true; }

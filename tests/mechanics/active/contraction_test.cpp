@@ -105,7 +105,7 @@ TEST(Contraction, DelayedSpringStartsItsProgramLater) {
     motion.end_time_s = time;
     EXPECT_NEAR(forces_of(step_on, motion.step())[0].x(), on * 65, 1e-12) << time;
     EXPECT_NEAR(forces_of(ramp, motion.step())[0].x(), ramped * 65, 1e-12) << time;
-    EXPECT_NEAR(ramp.activity(10, time), ramped, 1e-12);
+    EXPECT_NEAR(ramp.program().delayed_at(10, time), ramped, 1e-12);
   }
 }
 
