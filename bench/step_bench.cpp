@@ -54,7 +54,7 @@ BENCHMARK(assembly)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
 
 void factorisation(benchmark::State& bench) {
   const Setting setting(static_cast<int>(bench.range(0)));
-  SystemMatrix matrix(*setting.model);
+  SystemMatrix matrix(*setting.model, {}, false);
   matrix.set_zero();
   for (const auto& law : setting.model->laws) law->add_tangent(setting.step, matrix);
   matrix.take_gradients(*setting.model, setting.state.positions);
@@ -72,6 +72,7 @@ struct FactorSetting : Setting {
     matrix.set_zero();
     for (const auto& law : model->laws) law->add_tangent(step, matrix);
     const std::vector<double> weights(model->tissue.cells.size(), 10.0 / 16'000);  // 10 kPa over a cell's volume
+    matrix.take_gradients(*model, state.positions);
     matrix.add_constraint_stiffness(*model, state.positions, weights);
     matrix.write_projected_blocks(std::vector<NodeFrame>(state.positions.size()), values);
   }

@@ -85,7 +85,7 @@ System make_system(const SystemSettings& settings) {
   const State state = rest_state(*model);
   Step step{state.positions, state.positions, state.velocities, settings.step_s, settings.step_s};
   step.semidefinite_tangent = true;
-  System system{.pattern = SystemMatrix(*model).layout(),
+  System system{.pattern = SystemMatrix(*model, {}, false).layout(),
                 .values = {},
                 .near_kernel = {},
                 .elements = model->tissue.elements.size()};

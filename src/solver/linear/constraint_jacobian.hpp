@@ -48,6 +48,12 @@ class ConstraintJacobian {
   /// Return Constraint::gradient_scale of the function of a row, and its number of parts.
   [[nodiscard]] double gradient_scale(std::size_t row) const { return gradient_scale_[row]; }
   [[nodiscard]] int part_count(std::size_t row) const { return part_count_[row]; }
+  /// Whether a matrix may join all nodes of a sparse row. The pattern grows with their square: threefold at this limit,
+  /// fortyfold in cells of 10 x 10 x 10 elements.
+  [[nodiscard]] bool is_joined(std::size_t row) const {
+    constexpr std::size_t most_nodes = 48;  // cells of 3 x 3 x 2 elements; heptagons of kites in two layers
+    return part_count_[row] == 1 || of_row(row).size() <= most_nodes;
+  }
   /// Row ranges of each constraint: first, last.
   [[nodiscard]] const std::vector<std::pair<std::size_t, std::size_t>>& blocks() const { return blocks_; }
 
@@ -140,17 +146,19 @@ class ConstraintJacobian {
   /// Return a dense row, one Vec3 per free node. `row`: from 0.
   [[nodiscard]] std::span<const Vec3> dense_row(std::size_t row) const { return dense_[row]; }
 
-  /// Call body(row, nodes, gradients) for each part of the sparse functions at these positions; if `shared`,
-  /// simultaneously for parts without common nodes.
+  /// Call body(row, nodes, gradients) for each part of the sparse functions that are not joined, at these positions; if
+  /// `shared`, simultaneously for parts without common nodes.
   template <class Body>
-  void for_parts(const Model& model, std::span<const Vec3> positions, bool shared, const Body& body) const {
+  void for_parts_apart(const Model& model, std::span<const Vec3> positions, bool shared, const Body& body) const {
     for (const Source& source : sources_) {
       const Constraint& constraint = model.constraint(source.constraint);
-      if (constraint.is_dense()) continue;
+      const auto is_apart = [&](int function) { return !is_joined(source.first_row + function); };
+      if (constraint.is_dense() || std::ranges::none_of(source.parts.function, is_apart)) continue;
       UninitialisedVector<Vec3> gradients(source.slots.size());
       constraint.gradients(positions, gradients);
       constraint.for_parts(
           [&](std::size_t part) {
+            if (!is_apart(source.parts.function[part])) return;
             const auto nodes = source.parts.nodes[part];
             body(source.first_row + source.parts.function[part], nodes,
                  std::span<const Vec3>(gradients).subspan(source.parts.nodes.start(part), nodes.size()));

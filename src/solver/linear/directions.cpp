@@ -57,7 +57,7 @@ class DirectDirections final : public NewtonDirections {
   void prepare(const Step& step) {
     if (matrix_ && matrix_->serves(model_, step)) return;
     forget_factor();
-    matrix_ = std::make_unique<SystemMatrix>(model_, step);
+    matrix_ = std::make_unique<SystemMatrix>(model_, step, false);
     linear_solver_ = make_direct_solver();
     linear_solver_->analyse(matrix_->pattern());
   }

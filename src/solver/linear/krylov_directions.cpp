@@ -19,11 +19,11 @@ constexpr std::size_t most_obstacle_changes = 32;  // before the factor is recom
 
 // gamma times the size of a cell, relative to the mean stiffness of a node. A large value saves iterations for the
 // multipliers. Its limits: single precision must resolve A beside it; multigrid converges slowly on nearly
-// incompressible cells (and has ChequerboardFactor for pressures, so a factor of 2 changes little); within cells of
-// several elements it resists motions that exact volumes allow. With a factor, a third of it costs a fifth more
+// incompressible cells (and has ChequerboardFactor for pressures, so a factor of 2 changes little); where each element
+// of a cell resists, it opposes motions that exact volumes allow. With a factor, a third of it costs a fifth more
 // iterations; three times as much saves none.
-double regularisation(LinearMethod method, int parts) {
-  if (parts > 1) return 3;
+double regularisation(LinearMethod method, bool is_joined) {
+  if (!is_joined) return 3;
   return method == LinearMethod::multigrid ? 5 : 150;
 }
 
@@ -121,7 +121,8 @@ class KeptPreconditioner {
     const ConstraintJacobian& J = matrix_.jacobian();
     weights_.clear();
     for (std::size_t row = 0; row < J.rows(); ++row)
-      weights_.push_back(regularisation(method_, J.part_count(row)) * stiffness / J.gradient_scale(row));
+      weights_.push_back(regularisation(method_, row >= J.sparse_rows() || J.is_joined(row)) * stiffness /
+                         J.gradient_scale(row));
   }
   [[nodiscard]] UninitialisedVector<float> rigid_motions(const Iterate& at) const {
     const std::vector<NodeFrame>& frames = system_.frames();

@@ -11,8 +11,9 @@ namespace plica {
 
 namespace {
 
-// The free nodes of every group that a law or a constraint joins; what joins the same groups once.
-SparsePattern joined_nodes(const Model& model, const Step& step) {
+// The free nodes of every group that a law, a constraint or, if given, a row of J joins; what joins the same groups
+// once.
+SparsePattern joined_nodes(const Model& model, const Step& step, const ConstraintJacobian* jacobian) {
   std::vector<NodeGroups> lists;
   const auto take = [&](NodeGroups groups) {
     if (std::ranges::find(lists, groups) == lists.end()) lists.push_back(std::move(groups));
@@ -27,13 +28,19 @@ SparsePattern joined_nodes(const Model& model, const Step& step) {
         model.tissue.for_free_nodes(node, [&](NodeId n, double) { joined.columns.push_back(n.number()); });
       joined.starts.push_back(static_cast<int>(joined.columns.size()));
     }
+  for (std::size_t row = 0; jacobian != nullptr && row < jacobian->sparse_rows(); ++row) {
+    const bool is_in_lists = jacobian->part_count(row) == 1;
+    if (is_in_lists || !jacobian->is_joined(row)) continue;
+    for (const auto& gradient : jacobian->of_row(row)) joined.columns.push_back(gradient.node.number());
+    joined.starts.push_back(static_cast<int>(joined.columns.size()));
+  }
   return joined;
 }
 
 // The blocks that can be non-zero: of pairs within a group, and of every node with itself.
-BlockPattern pattern_of(const Model& model, const Step& step) {
+BlockPattern pattern_of(const Model& model, const Step& step, const ConstraintJacobian* jacobian) {
   const int nodes = static_cast<int>(model.tissue.free_node_count());
-  const SparsePattern groups = joined_nodes(model, step);
+  const SparsePattern groups = joined_nodes(model, step, jacobian);
   const Transposed of_node = transpose(groups, nodes);
   SparsePattern lower = collect_pattern(nodes, [&](int node, const auto& take) {
     take(node);
@@ -53,12 +60,12 @@ std::vector<int> pattern_revisions(const Model& model, const Step& step) {
   return revisions;
 }
 
-SystemMatrix::SystemMatrix(const Model& model, const Step& step)
+SystemMatrix::SystemMatrix(const Model& model, const Step& step, bool is_regularised)
     : tissue_(model.tissue),
       revisions_(pattern_revisions(model, step)),
-      layout_(pattern_of(model, step)),
-      blocks_(layout_.columns.size()),
-      jacobian_(model) {}
+      jacobian_(model),
+      layout_(pattern_of(model, step, is_regularised ? &jacobian_ : nullptr)),
+      blocks_(layout_.columns.size()) {}
 
 SparsePattern SystemMatrix::pattern() const {
   SparsePattern pattern;
@@ -137,14 +144,24 @@ void SystemMatrix::assemble(const Model& model, const ObstacleContacts& contacts
 
 void SystemMatrix::add_constraint_stiffness(const Model& model, std::span<const Vec3> positions,
                                             std::span<const double> weights) {
-  jacobian_.for_parts(model, positions, accepts_concurrent_blocks(),
-                      [&](std::size_t row, std::span<const NodeId> nodes, std::span<const Vec3> gradients) {
-                        // sum_p n (dc_p)^2 >= (sum_p dc_p)^2, of n parts.
-                        const double weight = weights[row] * jacobian_.part_count(row);
-                        for (std::size_t i = 0; i < nodes.size(); ++i)
-                          for (std::size_t j = 0; j <= i; ++j)
-                            add_block(nodes[i], nodes[j], weight * gradients[i] * gradients[j].transpose());
-                      });
+  // Every node has its own row of blocks, so threads change no bit.
+  parallel_for(tissue_.free_node_count(), [&](std::size_t node) {
+    for (const auto& [row, slot] : jacobian_.around(node)) {
+      if (!jacobian_.is_joined(row)) continue;
+      const auto gradients = jacobian_.of_row(row);
+      const Vec3 weighted = weights[row] * gradients[slot].value;
+      for (const auto& other : gradients.first(slot + 1))
+        add_lower(gradients[slot].node, other.node, weighted * other.value.transpose());
+    }
+  });
+  jacobian_.for_parts_apart(model, positions, accepts_concurrent_blocks(),
+                            [&](std::size_t row, std::span<const NodeId> nodes, std::span<const Vec3> gradients) {
+                              // sum_p n (dc_p)^2 >= (sum_p dc_p)^2, of n parts.
+                              const double weight = weights[row] * jacobian_.part_count(row);
+                              for (std::size_t i = 0; i < nodes.size(); ++i)
+                                for (std::size_t j = 0; j <= i; ++j)
+                                  add_block(nodes[i], nodes[j], weight * gradients[i] * gradients[j].transpose());
+                            });
 }
 
 double SystemMatrix::mean_diagonal() const {

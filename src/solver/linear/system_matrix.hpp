@@ -25,8 +25,8 @@ std::vector<int> pattern_revisions(const Model& model, const Step& step);
 
 class SystemMatrix final : public TangentSink {
  public:
-  /// Make the matrix for steps with the patterns of this one.
-  explicit SystemMatrix(const Model& model, const Step& step = {});
+  /// Make the matrix for steps with the patterns of this one; `is_regularised`: with room for constraint stiffness.
+  explicit SystemMatrix(const Model& model, const Step& step = {}, bool is_regularised = true);
 
   /// Whether the patterns are unchanged.
   [[nodiscard]] bool serves(const Model& model, const Step& step) const {
@@ -46,8 +46,9 @@ class SystemMatrix final : public TangentSink {
   void take_gradients(const Model& model, std::span<const Vec3> positions) { jacobian_.update(model, positions); }
   [[nodiscard]] const ConstraintJacobian& jacobian() const { return jacobian_; }
 
-  /// Add sum_r w_r J_r^T J_r of the sparse rows, distributed over the parts of their functions so that no further
-  /// nodes are joined: the elements of a cell each resist their own volume change.
+  /// Add sum_r w_r J_r^T J_r of the sparse rows, with the gradients of the last `assemble` or `take_gradients`. That of
+  /// a function of very many nodes (ConstraintJacobian::is_joined) is distributed over its parts, at these positions,
+  /// so that no further nodes are joined: the elements of such a cell each resist their own volume change.
   void add_constraint_stiffness(const Model& model, std::span<const Vec3> positions, std::span<const double> weights);
 
   /// Return the mean of the diagonal of A, nN/um.
@@ -72,9 +73,9 @@ class SystemMatrix final : public TangentSink {
 
   const Tissue& tissue_;
   std::vector<int> revisions_;
+  ConstraintJacobian jacobian_;
   BlockPattern layout_;  // lower triangle
   std::vector<Mat3> blocks_;
-  ConstraintJacobian jacobian_;
   std::atomic<bool> is_outside_ = false;  // whether a block outside the pattern was added
 };
 
