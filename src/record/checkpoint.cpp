@@ -77,8 +77,8 @@ void pass(AnyCheckpoint& checkpoint, Archive& archive) {
   auto& measures = run.measures;
   numbers("measures", measures.values, measures.monitors, measures.criteria_met, measures.is_over);
   numbers("run", run.steps, run.divisions, run.equilibrium_time_s, run.at_equilibrium, run.wanted_step_s,
-          run.pace.since_s, run.pace.steps, run.pace.iterations, run.computing_s, run.energies, run.whole_internals,
-          run.outside_arrays);
+          run.careful_steps, run.pace.since_s, run.pace.steps, run.pace.iterations, run.computing_s, run.energies,
+          run.whole_internals, run.outside_arrays);
   numbers("changes", run.changes, run.growth_ends_s);
   numbers("record", record.table_bytes, record.frame_times_s, record.wall_s, record.solver_s);
 }

@@ -94,8 +94,9 @@ RunControls make_controls(const Scenario& scenario) {
   return controls;
 }
 
-StepLength::StepLength(const RunControls& controls, double wanted_s)
-    : wanted_s_(controls.fixed_step_s.value_or(wanted_s > 0 ? wanted_s : controls.first_step_s)) {}
+StepLength::StepLength(const RunControls& controls, double wanted_s, int careful_steps)
+    : wanted_s_(controls.fixed_step_s.value_or(wanted_s > 0 ? wanted_s : controls.first_step_s)),
+      careful_steps_(careful_steps) {}
 
 double StepLength::propose_end_s(const RunControls& controls, double time_s, double until_s) const {
   const double latest = std::min(controls.end_s, until_s);
@@ -132,12 +133,15 @@ bool StepLength::accept(const RunControls& controls, const State& before, const 
     wanted_s_ = duration_s * std::max(factor, 0.2);
     return false;
   }
-  wanted_s_ = std::min(controls.max_step_s, std::max(duration_s * std::clamp(factor, 0.5, 2.0), 1e-9));
+  const double most_growth = careful_steps_ > 0 ? 1.15 : 2.0;
+  wanted_s_ = std::min(controls.max_step_s, std::max(duration_s * std::clamp(factor, 0.5, most_growth), 1e-9));
+  careful_steps_ = std::max(0, careful_steps_ - 1);
   return true;
 }
 
 bool StepLength::halve(const RunControls& controls, double failed_s) {
   wanted_s_ = 0.5 * failed_s;
+  careful_steps_ = 4;  // what could not be solved lies near, and its error does not tell
   return wanted_s_ > 1e-4 * controls.fixed_step_s.value_or(controls.first_step_s);
 }
 

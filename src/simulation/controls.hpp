@@ -35,8 +35,8 @@ RunControls make_controls(const Scenario& scenario);
 
 class StepLength {
  public:
-  /// Continue with steps of about `wanted_s`; 0: start.
-  explicit StepLength(const RunControls& controls, double wanted_s = 0);
+  /// Continue with steps of about `wanted_s`, the next `careful_steps` of which lengthen little; 0: start.
+  explicit StepLength(const RunControls& controls, double wanted_s = 0, int careful_steps = 0);
 
   /// End time of a step from `time_s`: `until_s` at most, and exactly on the times that steps must end on.
   [[nodiscard]] double propose_end_s(const RunControls& controls, double time_s,
@@ -45,13 +45,17 @@ class StepLength {
   /// Whether to accept the step from `before` to `after`; false if its error (step_error) requires a shorter one.
   [[nodiscard]] bool accept(const RunControls& controls, const State& before, const State& after);
 
-  /// Shorten after a failed step. Returns false if the next would be too short.
+  /// Shorten after an unsolved step; each of the next four lengthens by at most 1.15. Returns false if the next would
+  /// be too short.
   [[nodiscard]] bool halve(const RunControls& controls, double failed_s);
 
   [[nodiscard]] double wanted_s() const { return wanted_s_; }
+  /// Return the number of next steps that lengthen only little.
+  [[nodiscard]] int careful_steps() const { return careful_steps_; }
 
  private:
   double wanted_s_;
+  int careful_steps_;
 };
 
 /// Steps since a time, and their Newton iterations, those of rejected attempts included.

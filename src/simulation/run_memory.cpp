@@ -14,7 +14,8 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
                     contacts = ObstacleContacts(model).size();
   const auto none_or = [](std::size_t size, std::size_t full) { return size == 0 || size == full; };
   const State& state = run.state;
-  if (state.time_s < 0 || run.steps < 0 || run.wanted_step_s < 0 || state.trend.step_s < 0 || state.trend.earlier_s < 0)
+  if (state.time_s < 0 || run.steps < 0 || run.wanted_step_s < 0 || run.careful_steps < 0 || state.trend.step_s < 0 ||
+      state.trend.earlier_s < 0)
     return "its time or step is negative";
   if (!(run.pace.since_s >= 0 && run.pace.since_s <= state.time_s) || run.pace.steps < 0 || run.pace.iterations < 0)
     return "its pace is invalid";

@@ -24,6 +24,7 @@ struct RunMemory {
   std::optional<double> equilibrium_time_s;  // first time with all nodes below the stop speed
   bool at_equilibrium = false;               // at present
   double wanted_step_s = 0;                  // length of the next step; 0: no step yet
+  int careful_steps = 0;                     // next steps that lengthen only little (StepLength::halve)
   Pace pace;                                 // until it is known, then from there on
   double computing_s = 0;                    // wall time of its steps
   std::vector<EnergyFlow> energies;  // sums over all steps, in the order of energy_flows; empty before the first

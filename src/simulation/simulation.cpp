@@ -154,6 +154,7 @@ void Simulation::stop_when(std::function<bool()> stop_requested) {
 RunMemory Simulation::memory() const {
   RunMemory memory = now_;
   memory.wanted_step_s = step_length_.wanted_s();
+  memory.careful_steps = step_length_.careful_steps();
   forget_factor();
   if (full_model_) memory.whole_internals = full_model_->state().internals;
   return memory;
@@ -213,7 +214,7 @@ void Simulation::go_on_from(RunMemory memory) {
   std::ranges::copy(memory.growth_ends_s, std::back_inserter(controls_.program_points_s));
   now_ = std::move(memory);
   if (full_model_) full_model_->go_to(*model_, now_.state, std::move(now_.whole_internals));
-  step_length_ = StepLength(controls_, now_.wanted_step_s);
+  step_length_ = StepLength(controls_, now_.wanted_step_s, now_.careful_steps);
   grown_ = grown(*model_, now_.state.time_s);
   renew_stepper();
 }

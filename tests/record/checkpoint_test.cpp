@@ -101,6 +101,7 @@ TEST_F(CheckpointTest, ComesBackAsItWas) {
   EXPECT_EQ(after.scenario, before.scenario);
   EXPECT_EQ(after.run.state.positions, before.run.state.positions);
   EXPECT_EQ(after.run.wanted_step_s, before.run.wanted_step_s);
+  EXPECT_EQ(after.run.careful_steps, before.run.careful_steps);
   ASSERT_FALSE(before.run.state.trend.mean_velocities.empty()) << "second order";
   EXPECT_EQ(after.run.state.trend.mean_velocities, before.run.state.trend.mean_velocities);
   EXPECT_EQ(after.run.state.trend.earlier_s, before.run.state.trend.earlier_s);
@@ -286,9 +287,10 @@ TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
   unfit([](RunMemory& m) { m.state.time_s = -1; });
   unfit([](RunMemory& m) { m.steps = -1; });
   unfit([](RunMemory& m) { m.wanted_step_s = -1; });
+  unfit([](RunMemory& m) { m.careful_steps = -1; });
   unfit([](RunMemory& m) { m.pace.since_s = m.state.time_s + 1; });
   unfit([](RunMemory& m) { m.pace.steps = -1; });
-  EXPECT_EQ(cases, 15);
+  EXPECT_EQ(cases, 16);
 }
 
 // Sizes and indices, each of which the model would be made with.

@@ -108,6 +108,42 @@ TEST(StepLength, GrowsWhileStepsAreAccurateUpToItsLimit) {
   EXPECT_DOUBLE_EQ(step, 5);
 }
 
+TEST(StepLength, GrowsLittleInTheFourStepsAfterAnUnsolvedOne) {
+  const RunControls controls{.first_step_s = 1, .frame_every_s = 0};
+  StepLength length(controls);
+  Path steady;
+  const auto growth = [&](StepLength& of) {
+    const double step_s = of.wanted_s();
+    const State next = steady.after(step_s, steady.here().time_s + step_s);
+    EXPECT_TRUE(of.accept(controls, steady.here(), next));
+    steady.go_to(next);
+    return of.wanted_s() / step_s;
+  };
+  growth(length);
+  EXPECT_DOUBLE_EQ(growth(length), 2);
+  EXPECT_TRUE(length.halve(controls, length.wanted_s()));
+  EXPECT_EQ(length.careful_steps(), 4);
+  EXPECT_DOUBLE_EQ(growth(length), 1.15);
+  EXPECT_DOUBLE_EQ(growth(length), 1.15);
+  StepLength resumed(controls, length.wanted_s(), length.careful_steps());
+  EXPECT_DOUBLE_EQ(growth(resumed), 1.15);
+  EXPECT_DOUBLE_EQ(growth(resumed), 1.15);
+  EXPECT_DOUBLE_EQ(growth(resumed), 2);
+}
+
+// An error that asks for less is obeyed, and a step that it rejects counts as none.
+TEST(StepLength, ErrorsRuleInCarefulSteps) {
+  const RunControls controls{.first_step_s = 1, .position_tolerance_um = 0.01, .frame_every_s = 0};
+  StepLength length(controls, 2, 4);
+  Path path;
+  path.go_to(path.after(1, 1));
+  EXPECT_FALSE(length.accept(controls, path.here(), path.after(1, 3)));
+  EXPECT_EQ(length.careful_steps(), 4);
+  EXPECT_TRUE(length.accept(controls, path.here(), path.after(1, 2 + 0.02 / (0.8 * 0.8))));
+  EXPECT_NEAR(length.wanted_s(), 0.9 * 0.8, 1e-9);
+  EXPECT_EQ(length.careful_steps(), 3);
+}
+
 // Errors grow with the square of a step to first order and its cube to second, so the next length goes by the root of
 // what is allowed over what was: 0.9 of it, to be on the safe side.
 TEST(StepLength, TheNextOneIsByTheRootOfTheErrorThatIsAllowed) {

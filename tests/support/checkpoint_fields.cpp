@@ -46,15 +46,15 @@ struct Fields {
   }
 
   void take_run(const RunMemory& run) {
-    const auto& [state, measures, steps, divisions, equilibrium_time_s, at_equilibrium, wanted_step_s, pace,
-                 computing_s, energies, changes, growth_ends_s, whole_internals, outside_arrays] = run;
+    const auto& [state, measures, steps, divisions, equilibrium_time_s, at_equilibrium, wanted_step_s, careful_steps,
+                 pace, computing_s, energies, changes, growth_ends_s, whole_internals, outside_arrays] = run;
     take_state(state);
     const auto& [measured, monitors, criteria_met, is_over] = measures;
     take("measures", measured), take("monitors", monitors), take("criteria_met", criteria_met),
         take("is_over", is_over);
     take("steps", steps), take("divisions", divisions), take("equilibrium_time_s", equilibrium_time_s);
     take("at_equilibrium", at_equilibrium);
-    take("wanted_step_s", wanted_step_s), take("computing_s", computing_s);
+    take("wanted_step_s", wanted_step_s), take("careful_steps", careful_steps), take("computing_s", computing_s);
     const auto& [since_s, pace_steps, iterations] = pace;
     take("pace.since_s", since_s), take("pace.steps", pace_steps), take("pace.iterations", iterations);
     numbers["energies"];

@@ -188,10 +188,10 @@ NewtonStepper::~NewtonStepper() = default;
 void NewtonStepper::forget_factor() { directions_->forget_factor(); }
 
 // Line search: shorten the direction until laws allow it, no element inverts and the residual falls; if it never falls,
-// take the length of the smallest residual. False, with the reason in the report, if every length inverts an element or
-// gives a force that is not finite.
-bool NewtonStepper::search_line(const Step& step, const Direction& d, Iterate& at, Residual& now,
-                                StepReport& report) const {
+// take the length of the smallest residual. Returns the part of the direction at which the search ended; empty, with
+// the reason in the report, if every length inverts an element or gives a force that is not finite.
+std::optional<double> NewtonStepper::search_line(const Step& step, const Direction& d, Iterate& at, Residual& now,
+                                                 StepReport& report) const {
   std::optional<CellId> blocking;
   std::optional<std::pair<Iterate, Residual>> best;
   double part = 1;
@@ -214,11 +214,11 @@ bool NewtonStepper::search_line(const Step& step, const Direction& d, Iterate& a
   if (!best) {
     report.status = blocking ? StepReport::Status::inverted_element : StepReport::Status::not_finite;
     report.cell = blocking ? blocking : cell_with_largest(model_.tissue, now.forces);
-    return false;
+    return std::nullopt;
   }
   at = std::move(best->first);
   now = std::move(best->second);
-  return true;
+  return part;
 }
 
 Iterate NewtonStepper::forecast(const State& state, double duration_s) const {
@@ -288,8 +288,11 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
     return false;
   };
   bool contacts_settled = false;
-  constexpr int most_slow_iterations = 12;  // in a row, none of which halves the residual
-  double residual_reduction = 0;            // by the last direction
+  // Slow iterations do not halve the residual; so many in a row end the attempt. Short searches that hardly reduce it
+  // count more: beyond a limit point there is no solution nearby, and half the step finds one sooner.
+  constexpr int most_slow_iterations = 12, slow_ones_of_a_short_search = 6;
+  constexpr double short_search = 0.1, hardly_reduced = 0.9;
+  double residual_reduction = 0;  // by the last direction
   int slow_iterations = 0;
   for (;; ++report.newton_iterations) {
     report.residual = now.force;
@@ -327,9 +330,11 @@ StepReport NewtonStepper::advance(const State& state, double duration_s, bool fr
       return report;
     }
     const double before = now.merit();
-    if (!search_line(step, direction, at, now, report)) return report;
+    const std::optional<double> part = search_line(step, direction, at, now, report);
+    if (!part) return report;
     residual_reduction = now.merit() / before;
-    slow_iterations = residual_reduction > 0.5 ? slow_iterations + 1 : 0;
+    const bool is_short = *part < short_search && residual_reduction > hardly_reduced;
+    slow_iterations = residual_reduction > 0.5 ? slow_iterations + (is_short ? slow_ones_of_a_short_search : 1) : 0;
     contacts_settled = settle_contacts();
   }
   step.positions = at.positions;

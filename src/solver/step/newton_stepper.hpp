@@ -44,7 +44,8 @@ class NewtonStepper final : public Stepper {
 
  private:
   [[nodiscard]] Iterate forecast(const State& state, double duration_s) const;
-  bool search_line(const Step& step, const Direction& direction, Iterate& at, Residual& now, StepReport& report) const;
+  std::optional<double> search_line(const Step& step, const Direction& direction, Iterate& at, Residual& now,
+                                    StepReport& report) const;
   void accept(const State& state, const Step& step, double duration_s, TimeOrder order, Iterate at, State& next) const;
 
   const Model& model_;

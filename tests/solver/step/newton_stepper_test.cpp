@@ -253,6 +253,44 @@ TEST(NewtonStepper, AStepThatIsNotSolvedInTimeIsNotTaken) {
   EXPECT_TRUE(next.positions.empty());
 }
 
+/// Springs of all nodes to 1 nm beside their places, of a tangent that is a thousandth of what it should be: every
+/// direction overshoots so far that no part of it that is tried helps.
+class MisjudgedSprings final : public Law {
+ public:
+  [[nodiscard]] std::string_view name() const override { return "misjudged springs"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<MisjudgedSprings>(*this); }
+  [[nodiscard]] double energy(const Step&) const override { return 0; }
+  void add_forces(const Step& step, std::span<Vec3> forces) const override {
+    for (std::size_t n = 0; n < forces.size(); ++n)
+      forces[n] += stiffness * (step.previous_positions[n] + Vec3(1e-3, 0, 0) - step.positions[n]);
+  }
+  void add_tangent_product(const Step&, std::span<const Vec3> direction, std::span<Vec3> product) const override {
+    for (std::size_t n = 0; n < product.size(); ++n) product[n] += 1e-3 * stiffness * direction[n];
+  }
+  void add_tangent(const Step& step, TangentSink& tangent) const override {
+    for (std::size_t n = 0; n < step.positions.size(); ++n)
+      tangent.add_block(NodeId(n), NodeId(n), 1e-3 * stiffness * Mat3::Identity());
+  }
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const Division&,
+                                                    std::span<const Vec3>) const override {
+    return clone();
+  }
+
+ private:
+  static constexpr double stiffness = 1;  // nN/um
+};
+
+TEST(NewtonStepper, GivesUpAfterTwoSearchesThatTakeNextToNothing) {
+  Model model(build_block({.cells = {2, 1, 1}}));
+  model.volumes.hold(false);
+  model.laws.push_back(std::make_unique<MisjudgedSprings>());
+  NewtonStepper solver(model);
+  State after;
+  const StepReport report = solver.advance(rest_state(model), 1, true, after);
+  EXPECT_EQ(report.status, StepReport::Status::no_convergence);
+  EXPECT_EQ(report.newton_iterations, 2);
+}
+
 // Asked before every iteration, of Newton and Krylov; a request that comes in the middle of a step is heard there.
 TEST(NewtonStepper, AnInterruptedStepSaysSoAndLeavesTheStateAlone) {
   const Model model = dimpling_sheet();
