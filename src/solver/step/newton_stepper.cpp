@@ -6,6 +6,7 @@
 
 #include "core/parallel.hpp"
 #include "solver/linear/node_frame.hpp"
+#include "solver/step/obstacle_changes.hpp"
 
 namespace plica {
 namespace {
@@ -26,6 +27,7 @@ class Balance {
       : model_(model),
         tolerances_(tolerances),
         contacts_(model),
+        obstacle_changes_(model.tissue, contacts_),
         force_scale_(model.force_scale()),
         position_rounding_(model.position_rounding()),
         elastic_rounding_(model.elastic_rounding()) {
@@ -90,7 +92,6 @@ class Balance {
   /// Release nodes pulled inward, adds nodes outside, and projects all onto their obstacles. Returns whether any
   /// contact changed. `changes`: contacts; number of changes in this step, updated here.
   bool revise_contacts(Iterate& at, std::span<unsigned char> changes) const {
-    constexpr unsigned char many = 3;
     std::vector<char> wanted(at.on_obstacle.begin(), at.on_obstacle.end());
     parallel_for(wanted.size(), [&](std::size_t k) {
       const Obstacle::Gap gap = contacts_.gap(k, at.positions);
@@ -106,24 +107,9 @@ class Balance {
         wanted[k] = 1;
       }
     });
-    // Coupled contacts that change all at once may alternate without end. Those that have changed often change one at a
-    // time, lowest index first, which terminates for linear forces (Murty 1974).
-    bool changed = false, any_waits = false;
-    std::size_t first_waiting = 0;
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      if (wanted[k] == at.on_obstacle[k]) continue;
-      if (changes[k] >= many) {
-        if (!any_waits) first_waiting = k;
-        any_waits = true;
-        continue;
-      }
-      at.on_obstacle[k] = wanted[k];
-      ++changes[k];
-      changed = true;
-    }
-    if (any_waits && !changed) at.on_obstacle[first_waiting] = wanted[first_waiting];
+    const bool changed = obstacle_changes_.make(wanted, changes, at.on_obstacle);
     return_to_obstacles(model_, contacts_, at);
-    return changed || any_waits;
+    return changed;
   }
 
   [[nodiscard]] const ObstacleContacts& contacts() const { return contacts_; }
@@ -170,6 +156,7 @@ class Balance {
   const Model& model_;
   StepTolerances tolerances_;
   ObstacleContacts contacts_;
+  ObstacleChanges obstacle_changes_;
   double force_scale_;                       // nN
   double position_rounding_;                 // um
   double elastic_rounding_;                  // nN: resulting error of elastic forces
