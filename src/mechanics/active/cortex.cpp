@@ -202,21 +202,34 @@ std::vector<double> Cortex::areas(std::span<const Vec3> positions) const {
   return areas;
 }
 
-Cortex::FaceTensions Cortex::kernel_arrays(const Step& step) const {
-  FaceTensions faces{{}, areas(step.positions), std::vector<double>(places(), 0.0)};
-  faces.of_tensions.resize(places(), 0.0);
+bool Cortex::FaceTensions::are_of(const Step& step) const {
+  return times == std::array{step.end_time_s, step.rate_s, step.ahead} && std::ranges::equal(internal, step.internal) &&
+         std::ranges::equal(positions, step.positions);
+}
+
+Cortex::FaceTensions Cortex::face_tensions(const Step& step) const {
+  FaceTensions faces{areas(step.positions),
+                     std::vector<double>(places(), 0.0),
+                     {step.positions.begin(), step.positions.end()},
+                     {step.internal.begin(), step.internal.end()},
+                     {step.end_time_s, step.rate_s, step.ahead}};
+  faces.tensions.resize(places(), 0.0);
   chunks_.for_elements([&](std::size_t f) {
-    const Response response = respond(f, faces.of_tensions[f], step, false);
-    faces.of_tensions[f] = response.tension;
-    faces.of_slopes[f] = response.slope;
+    const Response response = respond(f, faces.tensions[f], step, false);
+    faces.tensions[f] = response.tension;
+    faces.slopes[f] = response.slope;
   });
-  static_cast<FaceArrays&>(faces) = {batches_.data(),          faces_.size(),          components(step.positions),
-                                     faces.of_tensions.data(), faces.of_slopes.data(), step.semidefinite_tangent};
   return faces;
 }
 
+FaceArrays Cortex::kernel_arrays(const Step& step) const {
+  if (!kept_.are_of(step)) kept_ = face_tensions(step);
+  return {batches_.data(),       faces_.size(),       components(step.positions),
+          kept_.tensions.data(), kept_.slopes.data(), step.semidefinite_tangent};
+}
+
 std::vector<double> Cortex::tensions(const Step& step) const {
-  std::vector<double> tensions = kernel_arrays(step).of_tensions;
+  std::vector<double> tensions = face_tensions(step).tensions;
   tensions.resize(faces_.size());
   return tensions;
 }

@@ -86,10 +86,16 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   [[nodiscard]] Response elastic(std::size_t face, double area, const Step& step, double b, bool with_energy) const;
   [[nodiscard]] Response crowded(std::size_t face, double area, bool with_energy) const;
   [[nodiscard]] double stiffening_of(std::size_t face, const Step& step) const;
-  struct FaceTensions : FaceArrays {             // all faces at the end of a step
-    std::vector<double> of_tensions, of_slopes;  // faces, filled up to whole batches
+  struct FaceTensions {                    // all faces at the end of a step
+    std::vector<double> tensions, slopes;  // faces, filled up to whole batches
+    Vectors positions;                     // what they depend on
+    std::vector<double> internal;
+    std::array<double, 3> times = {};
+
+    [[nodiscard]] bool are_of(const Step& step) const;
   };
-  [[nodiscard]] FaceTensions kernel_arrays(const Step& step) const;
+  [[nodiscard]] FaceTensions face_tensions(const Step& step) const;
+  [[nodiscard]] FaceArrays kernel_arrays(const Step& step) const;
   [[nodiscard]] bool flows() const { return rule_.relaxation_s > 0; }
   [[nodiscard]] double rest_area_before(std::size_t face, const Step& step) const;
   class Origins;  // faces before a division that faces after it come from
@@ -116,6 +122,7 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   std::vector<double> strengths_;   // faces
   ShapeActivation activation_;
   std::vector<FaceBatch> batches_;
+  mutable FaceTensions kept_;  // of the last iterate, for all products of its linear system; one thread at a time
 };
 
 }  // namespace plica

@@ -43,6 +43,46 @@ TEST(Cortex, DerivativesAgreeWithFiniteDifferences) {
   check_derivatives(Cortex(tissue, all_cells(tissue), {.side = CellSide::apical, .tension = 1}), tissue, 2);
 }
 
+// A law keeps the tensions of its last iterate; no other iterate sees them.
+TEST(Cortex, WhatItKeepsIsOfTheSameIterate) {
+  const Tissue tissue =
+      distorted_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}}, 2, 3);
+  const Cortex law(tissue, all_cells(tissue), whole_rule(CellSide::lateral));
+  const Vectors direction = Random(1).vectors(tissue.node_count());
+  int cases = 0;
+  const auto expect_as_new = [&](const Step& step) {
+    const Cortex fresh(tissue, all_cells(tissue), whole_rule(CellSide::lateral));
+    for (int again = 0; again < 2; ++again) {
+      Vectors product(direction.size(), Vec3::Zero()), forces = product, of_fresh = product, forces_of_fresh = product;
+      law.add_tangent_product(step, direction, product);
+      law.add_forces(step, forces);
+      fresh.add_tangent_product(step, direction, of_fresh);
+      fresh.add_forces(step, forces_of_fresh);
+      EXPECT_EQ(product, of_fresh) << "case " << cases;
+      EXPECT_EQ(forces, forces_of_fresh) << "case " << cases;
+    }
+    ++cases;
+  };
+  Motion motion = random_motion(tissue, 2, 4);
+  motion.internal = law.first_internal(tissue);
+  const Step step = motion.step();
+  expect_as_new(step);
+  Step other = step;
+  other.end_time_s += 0.5;
+  expect_as_new(other);
+  other = step;
+  other.rate_s *= 2;
+  expect_as_new(other);
+  other = step;
+  other.semidefinite_tangent = true;
+  expect_as_new(other);
+  motion.internal.front() *= 1.1;
+  expect_as_new(motion.step());
+  motion.positions[5].x() += 1e-9;
+  expect_as_new(motion.step());
+  EXPECT_EQ(cases, 6);
+}
+
 // Against the area as the rest of plica has it: T dA/dx by differences, with any kernels, any number of faces.
 TEST(Cortex, EveryInstructionSetHasTheSameAreas) {
   for (const int cells : {1, 3, 9, 21}) {
