@@ -7,7 +7,6 @@
 #include <optional>
 #include <set>
 
-#include "core/box_grid.hpp"
 #include "mechanics/coulomb.hpp"
 
 namespace plica {
@@ -166,14 +165,14 @@ struct SelfContact::Surface {
   Vectors normals;          // of nodes, by the area vectors of their facets
   Vectors outward;          // of nodes on the rim of an open surface: the way out of it; else zero
   std::vector<Triangle> triangles;
-  BoxGrid grid;  // of the triangles, widened by the search
+  const BoxGrid& grid;  // of the facets
 
   Surface(const SelfContact& law, std::span<const Vec3> positions)
       : x(positions),
         normals(x.size(), Vec3::Zero()),
         outward(x.size(), Vec3::Zero()),
         triangles(triangles_of(law.facets_, x)),
-        grid(cube_size(law)) {
+        grid(law.grid_of(x)) {
     for (const auto& facet : law.facets_) {
       const Vec3 area = area_vector(facet, x);
       for (const NodeId node : facet) normals[node.index()] += area;
@@ -183,29 +182,38 @@ struct SelfContact::Surface {
       outward[from.index()] += out;
       outward[to.index()] += out;
     }
-    for (std::size_t t = 0; t < triangles.size(); ++t)
-      grid.add(t, box_of(triangles[t].corners).widened(law.rule_.search));
-  }
-
-  [[nodiscard]] double cube_size(const SelfContact& law) const {
-    double longest = 0;
-    for (const auto& facet : law.facets_)
-      for (const int i : {0, 1}) longest = std::max(longest, (x[facet[i + 2].index()] - x[facet[i].index()]).norm());
-    return std::max(law.rule_.search, 0.5 * longest);
   }
 };
+
+const BoxGrid& SelfContact::grid_of(std::span<const Vec3> x) const {
+  const auto stays = [&](const Vec3& now, const Vec3& then) { return (now - then).norm() <= margin(); };
+  if (std::ranges::equal(x, grid_.positions, stays)) return grid_.facets;
+  std::vector<Box> boxes;
+  double longest = 0;
+  for (const auto& [a, b, c, d] : facets_) {
+    const std::array corners = {x[a.index()], x[b.index()], x[c.index()], x[d.index()]};
+    boxes.push_back(box_of(corners).widened(rule_.search + margin()));
+    longest = std::max({longest, (corners[2] - corners[0]).norm(), (corners[3] - corners[1]).norm()});
+  }
+  grid_ = {{x.begin(), x.end()}, BoxGrid(std::max(rule_.search, 0.5 * longest))};
+  for (std::size_t f = 0; f < boxes.size(); ++f) grid_.facets.add(f, boxes[f]);
+  return grid_.facets;
+}
 
 // Whether no facet about q is nearer to the place than q itself.
 bool SelfContact::is_nearest_about(const SurfacePlace& q, const Vec3& place, const Surface& surface) const {
   const double limit = (1 - 1e-9) * (q.at(surface.x) - place).squaredNorm();
-  return std::ranges::none_of(surface.grid.near(place), [&](std::size_t t) {
-    const auto& facet = facets_[t / 4];
-    const auto& [a, b, c] = surface.triangles[t].corners;
+  const auto is_about = [&](const std::array<NodeId, 4>& facet) {
     for (int k = 0; k < q.count(); ++k)
-      if (q.weights[k] > 0 && std::ranges::find(facet, NodeId(q.nodes[k])) != facet.end())
-        return closest_on_triangle(place, a, b, c).squared_distance < limit;
+      if (q.weights[k] > 0 && std::ranges::find(facet, NodeId(q.nodes[k])) != facet.end()) return true;
     return false;
-  });
+  };
+  for (const std::size_t f : surface.grid.near(place)) {
+    if (!is_about(facets_[f])) continue;
+    for (const auto& [corners, area] : std::span(surface.triangles).subspan(4 * f, 4))
+      if (closest_on_triangle(place, corners[0], corners[1], corners[2]).squared_distance < limit) return false;
+  }
+  return true;
 }
 
 std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> known, const Surface& surface,
@@ -216,41 +224,43 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> kn
   const double within = first ? reach_of_second() : rule_.search;
   double nearest2 = within * within;
   std::optional<Pair> best;
-  for (const std::size_t t : grid.near(place)) {
-    if (facing.dot(triangles[t].area) >= 0) continue;  // they look the same way
-    if (std::ranges::binary_search(neighbours_[p], t / 4)) continue;
-    if (first && have_common_node(first->q.all_nodes(), facets_[t / 4])) continue;
-    const auto& [a, b, c] = triangles[t].corners;
-    const auto [of_corners, distance2] = closest_on_triangle(place, a, b, c);
-    if (distance2 >= nearest2) continue;
-    SurfacePlace q(facets_[t / 4], 4);
-    q.weights.fill(of_corners[2] / 4);
-    q.weights[t % 4] += of_corners[0];
-    q.weights[(t + 1) % 4] += of_corners[1];
-    Vec3 outside = Vec3::Zero();
-    for (int k = 0; k < 4; ++k) outside += q.weights[k] * normals[q.nodes[k].index()].normalized();
-    if (outside.norm() < 0.1) continue;  // a sharp edge has no side
-    // Normal along the shortest connection, so that sliding reduces no gap.
-    Pair found{static_cast<double>(p), Pair::no_segment, point, q, outside.normalized(), points_[p].area};
-    const Vec3 apart = found.apart(x);
-    if (std::ranges::all_of(of_corners, [](double weight) { return weight > 0; }))
-      found.normal = triangles[t].area.normalized();
-    else if (apart.norm() > 1e-3 * rule_.distance)
-      found.normal = (apart.dot(outside) < 0 ? -apart : apart).normalized();
-    // Tips of two ridges that face the same way may touch; then each is the nearest place of the other.
-    constexpr double rounded = -1e-9;  // of a cosine: what is square to each other on one side is so on its image
-    if (found.normal.dot(facing) > rounded) continue;
-    if ((first || outside.dot(facing) >= 0) && !is_nearest_about(q, place, surface)) continue;
-    // Admissible penetration: after contact, one distance more than its last pair, which lags.
-    const Pair* last = nearest_of(known, q.at(x), x);
-    const double last_gap = last ? last->gap(x) : std::numeric_limits<double>::infinity();
-    found.first_gap = found.gap(x);
-    if (found.first_gap < (last_gap < rule_.distance ? std::min(0.0, last_gap) - rule_.distance : 0)) continue;
-    // A pair detected below the contact distance starts without force, so nothing jumps apart.
-    const double seen_at = last ? last->distance : -std::numeric_limits<double>::infinity();
-    found.distance = std::min(rule_.distance, std::max(seen_at, found.first_gap));
-    nearest2 = distance2;
-    best = found;
+  for (const std::size_t f : grid.near(place)) {
+    if (std::ranges::binary_search(neighbours_[p], f)) continue;
+    if (first && have_common_node(first->q.all_nodes(), facets_[f])) continue;
+    for (std::size_t t = 4 * f; t < 4 * f + 4; ++t) {
+      if (facing.dot(triangles[t].area) >= 0) continue;  // they look the same way
+      const auto& [a, b, c] = triangles[t].corners;
+      const auto [of_corners, distance2] = closest_on_triangle(place, a, b, c);
+      if (distance2 >= nearest2) continue;
+      SurfacePlace q(facets_[f], 4);
+      q.weights.fill(of_corners[2] / 4);
+      q.weights[t % 4] += of_corners[0];
+      q.weights[(t + 1) % 4] += of_corners[1];
+      Vec3 outside = Vec3::Zero();
+      for (int k = 0; k < 4; ++k) outside += q.weights[k] * normals[q.nodes[k].index()].normalized();
+      if (outside.norm() < 0.1) continue;  // a sharp edge has no side
+      // Normal along the shortest connection, so that sliding reduces no gap.
+      Pair found{static_cast<double>(p), Pair::no_segment, point, q, outside.normalized(), points_[p].area};
+      const Vec3 apart = found.apart(x);
+      if (std::ranges::all_of(of_corners, [](double weight) { return weight > 0; }))
+        found.normal = triangles[t].area.normalized();
+      else if (apart.norm() > 1e-3 * rule_.distance)
+        found.normal = (apart.dot(outside) < 0 ? -apart : apart).normalized();
+      // Tips of two ridges that face the same way may touch; then each is the nearest place of the other.
+      constexpr double rounded = -1e-9;  // of a cosine: what is square to each other on one side is so on its image
+      if (found.normal.dot(facing) > rounded) continue;
+      if ((first || outside.dot(facing) >= 0) && !is_nearest_about(q, place, surface)) continue;
+      // Admissible penetration: after contact, one distance more than its last pair, which lags.
+      const Pair* last = nearest_of(known, q.at(x), x);
+      const double last_gap = last ? last->gap(x) : std::numeric_limits<double>::infinity();
+      found.first_gap = found.gap(x);
+      if (found.first_gap < (last_gap < rule_.distance ? std::min(0.0, last_gap) - rule_.distance : 0)) continue;
+      // A pair detected below the contact distance starts without force, so nothing jumps apart.
+      const double seen_at = last ? last->distance : -std::numeric_limits<double>::infinity();
+      found.distance = std::min(rule_.distance, std::max(seen_at, found.first_gap));
+      nearest2 = distance2;
+      best = found;
+    }
   }
   return best;
 }

@@ -18,6 +18,7 @@
 #include <array>
 #include <vector>
 
+#include "core/box_grid.hpp"
 #include "mechanics/contact/contact_pair.hpp"
 #include "mechanics/contact/edge_pairs.hpp"
 #include "mechanics/law.hpp"
@@ -86,6 +87,14 @@ class SelfContact final : public Law {
 
  private:
   struct Surface;
+  /// Boxes of facets, widened by the search and a margin: they serve until a node has moved by more than the margin.
+  struct KeptGrid {
+    Vectors positions;  // full tissue, when it was made
+    BoxGrid facets{1};
+  };
+  [[nodiscard]] double margin() const { return 0.25 * rule_.search; }
+  /// Return a grid whose facets near a place are at least those within the search of it.
+  [[nodiscard]] const BoxGrid& grid_of(std::span<const Vec3> positions) const;
   /// Find the pair of a point with the nearest facing triangle; after a `first` pair, with the nearest one of another
   /// part of the surface. `known`: pairs of the point in the previous step.
   [[nodiscard]] std::optional<Pair> pair_of(std::size_t point, std::span<const Pair> known, const Surface& surface,
@@ -117,6 +126,7 @@ class SelfContact final : public Law {
   // Per point, sorted: facets that share a node with its facets, or on whose edge one of their nodes hangs.
   std::vector<std::vector<std::size_t>> neighbours_;
   EdgePairs edges_;
+  mutable KeptGrid grid_;  // pairs do not depend on when it was made
 };
 
 }  // namespace plica

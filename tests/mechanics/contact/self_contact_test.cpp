@@ -1,5 +1,7 @@
 #include "mechanics/contact/self_contact.hpp"
 
+#include <cstring>
+
 #include "support/bodies.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
@@ -43,6 +45,31 @@ TEST(SelfContact, PairsFaceEachOtherAndAreNoNeighbours) {
   EXPECT_TRUE(SelfContact(folded(30), {.search = 4}).pairs(folded(30).rest_positions).empty());
   const Tissue flat = build_block({.length_um = 60, .width_um = 60, .cell_height_um = 10, .cells = {6, 6, 1}});
   EXPECT_TRUE(SelfContact(flat, {.search = 40}).pairs(flat.rest_positions).empty());
+}
+
+// However nodes have moved since a law last looked, and however far: as a law sees it that looks for the first time.
+TEST(SelfContact, PairsDoNotDependOnWhereNodesWereBefore) {
+  const SelfContactRule rule{.search = 4};
+  const Tissue tissue = folded(3);
+  const SelfContact law(tissue, rule);
+  Random random(3);
+  Vectors positions = tissue.rest_positions;
+  std::size_t pairs_in_all = 0;
+  for (int motion = 0; motion < 60; ++motion) {
+    // Small ones that add up, now and then a large one, and rigid ones of everything.
+    const double size = motion % 10 == 9 ? 1.5 : 0.15;
+    const Vec3 drift = motion % 3 == 0 ? Vec3(0.4, 0, -0.3) : Vec3(Vec3::Zero());
+    const Vectors moves = random.vectors(positions.size());
+    Vectors trial = positions;
+    for (std::size_t n = 0; n < trial.size(); ++n) trial[n] += size * moves[n] + drift;
+    const std::vector<SelfContact::Pair> found = law.pairs(trial), fresh = SelfContact(tissue, rule).pairs(trial);
+    ASSERT_EQ(found.size(), fresh.size()) << "motion " << motion;
+    EXPECT_EQ(std::memcmp(found.data(), fresh.data(), found.size() * sizeof(SelfContact::Pair)), 0)
+        << "motion " << motion;
+    pairs_in_all += found.size();
+    if (size < 1) positions = trial;  // others are rejected steps
+  }
+  EXPECT_GT(pairs_in_all, 1000u);
 }
 
 // Where the surface creases sharply, places that lie on the edge of the facet beyond it touch that, and are no pair
