@@ -3,6 +3,8 @@
 
 Usage: bench_test.py ROOT BUILD
 """
+import importlib.machinery
+import importlib.util
 import json
 import subprocess
 import sys
@@ -17,6 +19,29 @@ from suite import sizes, tables  # noqa: E402
 def bench(*arguments):
     return subprocess.run([sys.executable, root / "bench/run", *map(str, arguments)], capture_output=True, text=True)
 
+
+# Two commits: ratios of medians beside what is required, and failures told.
+loader = importlib.machinery.SourceFileLoader("speed", str(root / "bench/speed"))
+speed = importlib.util.module_from_spec(importlib.util.spec_from_loader("speed", loader))
+sys.modules["speed"] = speed
+sys.dont_write_bytecode = True
+loader.exec_module(speed)
+work = speed.Work("some", "drosophila", must=0.5, aim=0.3)
+old, new = sides = [speed.Side(commit, Path("/nowhere")) for commit in ("old", "new")]
+for side, times in zip(sides, ([9, 2, 4], [1, 3, 1])):
+    side.runs["some"] = [{"process_cpu_s": cpu_s, "instructions": 100 * cpu_s, "steps": 5, "refused_steps": 1} for cpu_s in times]
+text, wrong = speed.page([work], old, new)
+assert "| some | 4 | 1 | 0.25 | 0.5 | 0.3 |" in text and "| some | 400 | 100 | 0.25 |" in text and not wrong, text
+assert "| some | old | – | 5 | 1 |" in text and "| refused steps of some, % | 20 | 20 | – | – |" in text, text
+whole = speed.Side("any", Path("/nowhere"))
+for each in speed.FULL:
+    whole.runs[each.name] = [{"process_cpu_s": 1, "steps": 1, "refused_steps": 1}]
+assert set(speed.FIGURE_LIMITS) <= {name for name, *_ in speed.figures(speed.FULL, whole, whole)}, "limits of nothing"
+text, wrong = speed.page([work], new, old)
+assert wrong == ["some: 4, must be 0.5 or less"] and not speed.page([work], new, old, required=False)[1]
+new.runs["some"] = [{"failed": "out of luck"}]
+text, wrong = speed.page([work], old, new)
+assert "| some | 4 | – | – |" in text and wrong == ["some, new: out of luck"], text
 
 # Embryos of about the sizes asked for.
 for size in (756, 10_000, 25_000, 200_000, 1_000_000):

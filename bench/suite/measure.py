@@ -35,16 +35,12 @@ def median(values):
     return statistics.median(values)
 
 
-class Suite:
-    def __init__(self, build, timeout_s):
-        self.build, self.timeout_s = Path(build).resolve(), timeout_s
-        self.plica, self.step, self.kernels = (self.build / name for name in ("plica", "bench/step", "bench/kernels"))
-        for program in (self.plica, self.step):
-            if not os.access(program, os.X_OK):
-                raise Missing(f"{program} is missing; build it: cmake --preset release && cmake --build --preset release")
+class Runner:
+    def __init__(self, timeout_s):
+        self.timeout_s = timeout_s
 
     def run(self, program, *arguments, threads=1, under=(), good=(0,)):
-        """Standard output, standard error, and what the process took: wall time and peak memory."""
+        """Standard output, standard error, and what the process took: wall and CPU time and peak memory."""
         command = [*map(str, under), str(program), *map(str, arguments)]
         environment = os.environ | {"OMP_NUM_THREADS": str(threads)}
         with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as errors:
@@ -63,7 +59,8 @@ class Suite:
             raise Failed(f"ended by signal {-status}")
         if status not in good:
             raise Failed((complaint.splitlines() or [f"exit status {status}"])[-1])
-        return text, complaint, {"process_s": wall_s, "process_peak_MiB": usage.ru_maxrss / 1024}
+        return text, complaint, {"process_s": wall_s, "process_cpu_s": usage.ru_utime + usage.ru_stime,
+                                 "process_peak_MiB": usage.ru_maxrss / 1024}
 
     def wait(self, process, start):
         while True:
@@ -75,7 +72,27 @@ class Suite:
                 raise Failed(f"more than {self.timeout_s:g} s")
             time.sleep(min(0.02, self.timeout_s))
 
-    # Measurements
+    def instructions(self, run, *options):
+        """Those of `run(under)`, by valgrind's callgrind, which emulates: about fifty times slower, and without AVX-512."""
+        valgrind = shutil.which("valgrind")
+        if not valgrind:
+            raise Missing("counting instructions needs valgrind: apt-get install valgrind")
+        with tempfile.TemporaryDirectory() as folder:
+            complaint = run([valgrind, "--tool=callgrind", f"--callgrind-out-file={folder}/callgrind.out", *options])[1]
+        found = re.search(r"Collected : (\d+)", complaint)
+        if not found:
+            raise Failed("callgrind counted nothing")
+        return int(found.group(1))
+
+
+class Suite(Runner):
+    def __init__(self, build, timeout_s):
+        super().__init__(timeout_s)
+        self.build = Path(build).resolve()
+        self.plica, self.step, self.kernels = (self.build / name for name in ("plica", "bench/step", "bench/kernels"))
+        for program in (self.plica, self.step):
+            if not os.access(program, os.X_OK):
+                raise Missing(f"{program} is missing; build it: cmake --preset release && cmake --build --preset release")
 
     def has_kernels(self):
         if not self.kernels.exists():
@@ -153,21 +170,11 @@ class Suite:
                         threads=threads, under=under, good=(0, 1))  # 1: another depth than the paper's cells have
 
     def count_instructions(self, what, embryo):
-        """By valgrind's callgrind, which emulates: about fifty times slower, and without AVX-512."""
-        valgrind = shutil.which("valgrind")
-        if not valgrind:
-            raise Missing("--instructions needs valgrind: apt-get install valgrind")
+        if what == "step":
+            return self.instructions(lambda under: self.run(self.step, *embryo.options, under=under),
+                                     "--toggle-collect=*take_step*")
         with tempfile.TemporaryDirectory() as folder:
-            under = [valgrind, "--tool=callgrind", f"--callgrind-out-file={folder}/callgrind.out"]
-            if what == "step":
-                under.append("--toggle-collect=*take_step*")
-                complaint = self.run(self.step, *embryo.options, under=under)[1]
-            else:
-                complaint = self.run_plica(embryo, 1, folder, under)[1]
-        found = re.search(r"Collected : (\d+)", complaint)
-        if not found:
-            raise Failed("callgrind counted nothing")
-        return int(found.group(1))
+            return self.instructions(lambda under: self.run_plica(embryo, 1, folder, under))
 
     def require_memory(self, embryo):
         needed, available = embryo.elements * BYTES_PER_ELEMENT_AT_LEAST, memory_available_bytes()
