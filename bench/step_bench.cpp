@@ -85,6 +85,8 @@ void block_factor(benchmark::State& bench) {
   FactorSetting setting(static_cast<int>(bench.range(0)));
   for (auto _ : bench)
     if (!setting.factor.factorise(setting.values)) bench.SkipWithError("not positive definite");
+  bench.counters["numbers"] = static_cast<double>(setting.factor.factor_size());
+  bench.counters["blocks"] = static_cast<double>(setting.matrix.layout().columns.size());
 }
 BENCHMARK(block_factor)->Arg(1)->Arg(2)->Unit(benchmark::kMicrosecond);
 

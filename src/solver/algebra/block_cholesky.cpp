@@ -8,6 +8,7 @@
 #include <cstring>
 #include <exception>
 #include <stdexcept>
+#include <utility>
 
 #include "solver/algebra/blas.hpp"
 
@@ -65,9 +66,10 @@ std::vector<int> postorder(const std::vector<int>& parent) {
 
 }  // namespace
 
-BlockCholesky::BlockCholesky(const BlockPattern& pattern, Kernels kernels)
-    : products_(&panel_products(kernels)), nodes_(pattern.nodes()) {
+BlockCholesky::BlockCholesky(const BlockPattern& pattern, Kernels kernels, std::vector<int> positions)
+    : products_(&panel_products(kernels)), nodes_(pattern.nodes()), position_(std::move(positions)) {
   prepare_blas();
+  if (position_.empty()) position_ = elimination_order(pattern);
   order(pattern);
   place_blocks(pattern);
   std::size_t size = 0;
@@ -130,7 +132,6 @@ void BlockCholesky::share_out() {
 }
 
 void BlockCholesky::order(const BlockPattern& pattern) {
-  position_ = elimination_order(pattern);
   const auto below_in_order = [&] {
     Neighbours below(nodes_);
     for (int row = 0; row < nodes_; ++row)

@@ -27,9 +27,10 @@ class BlockCholesky final : public Preconditioner {
   /// Factor size, 8 MB, from which solves are distributed over threads.
   static constexpr std::size_t worth_sharing = 2'000'000;
 
-  /// Order the nodes and finds the structure of the factor; once per topology. `kernels` selects the products of
-  /// solves.
-  explicit BlockCholesky(const BlockPattern& pattern, Kernels kernels = chosen_kernels());
+  /// Find the structure of the factor; once per topology. `kernels` selects the products of solves. `positions`: those
+  /// of a factor of a similar pattern (`positions`), to eliminate nodes in its order; empty: find an order.
+  explicit BlockCholesky(const BlockPattern& pattern, Kernels kernels = chosen_kernels(),
+                         std::vector<int> positions = {});
 
   /// Factorise; `values` are the blocks of the pattern, nine numbers each, by rows. False if the matrix is not
   /// positive definite in single precision: it is up to condition numbers of 1e6, and rarely beyond 1e7.
@@ -55,6 +56,8 @@ class BlockCholesky final : public Preconditioner {
 
   /// Number of stored values, including zeros inside panels.
   [[nodiscard]] std::size_t factor_size() const { return factor_size_; }
+  /// Return the position of each node in order of elimination.
+  [[nodiscard]] const std::vector<int>& positions() const { return position_; }
 
  private:
   struct Block {

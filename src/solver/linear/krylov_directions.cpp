@@ -35,13 +35,15 @@ double regularisation(LinearMethod method, bool is_joined) {
 /// docs/theory/step.md, Linear systems.
 class KeptPreconditioner {
  public:
-  /// Make a preconditioner of `system`, for steps with the patterns of `step`.
-  KeptPreconditioner(const Model& model, const LinearisedSystem& system, LinearMethod method, const Step& step)
+  /// Make a preconditioner of `system`, for steps with the patterns of `step`. `before`: that of earlier patterns,
+  /// whose order of elimination serves if it suits these; or null.
+  KeptPreconditioner(const Model& model, const LinearisedSystem& system, LinearMethod method, const Step& step,
+                     const KeptPreconditioner* before)
       : model_(model), system_(system), method_(method), matrix_(model, step) {
     if (method == LinearMethod::multigrid) {
       preconditioner_ = make_multigrid(matrix_.layout());
     } else {
-      auto factor = std::make_unique<BlockCholesky>(matrix_.layout());
+      auto factor = make_factor(before);
       factor_ = factor.get();
       preconditioner_ = std::move(factor);
     }
@@ -50,6 +52,9 @@ class KeptPreconditioner {
     if (method == LinearMethod::multigrid && matrix_.jacobian().sparse_rows() > 0 && !is_refined)
       chequerboards_.emplace(matrix_.jacobian(), model.tissue.free_node_count());
   }
+
+  /// Whether the order of elimination is that of earlier patterns.
+  [[nodiscard]] bool has_borrowed_order() const { return size_when_ordered_.has_value(); }
 
   /// Whether the patterns of the laws are unchanged.
   [[nodiscard]] bool serves(const Step& step) const { return matrix_.serves(model_, step); }
@@ -116,6 +121,19 @@ class KeptPreconditioner {
   [[nodiscard]] std::span<const double> weights() const { return weights_; }
 
  private:
+  // Where contacts have come and gone, an earlier order does nearly as well, and METIS takes longer than all the rest.
+  std::unique_ptr<BlockCholesky> make_factor(const KeptPreconditioner* before) {
+    constexpr double most_growth = 1.1;
+    if (before != nullptr && before->factor_ != nullptr) {
+      const double size = before->size_when_ordered_.value_or(static_cast<double>(before->factor_->factor_size()));
+      auto factor = std::make_unique<BlockCholesky>(matrix_.layout(), chosen_kernels(), before->factor_->positions());
+      if (static_cast<double>(factor->factor_size()) <= most_growth * size) {
+        size_when_ordered_ = size;
+        return factor;
+      }
+    }
+    return std::make_unique<BlockCholesky>(matrix_.layout());
+  }
   void weigh() {
     const double stiffness = matrix_.mean_diagonal();
     const ConstraintJacobian& J = matrix_.jacobian();
@@ -184,7 +202,8 @@ class KeptPreconditioner {
   LinearMethod method_;  // cholesky or multigrid
   SystemMatrix matrix_;  // with its J, at the iterate of the inverse
   std::unique_ptr<Preconditioner> preconditioner_;
-  const BlockCholesky* factor_ = nullptr;  // the factor, if it is one, with its border
+  const BlockCholesky* factor_ = nullptr;    // the factor, if it is one, with its border
+  std::optional<double> size_when_ordered_;  // of the factor that a borrowed order was made for
   ObstacleBorder contacts_;
   std::optional<ChequerboardFactor> chequerboards_;  // for modes that gamma W does not resist
   DenseBorder dense_;
@@ -294,13 +313,18 @@ class KrylovDirections final : public NewtonDirections {
     direction = system_.direction_of(solution, at.multipliers.size());
     return Status::found;
   }
-  void forget_factor() override { is_made_ = false; }
+  // A borrowed order goes as well: resumed runs find their own, and have to be bitwise identical.
+  void forget_factor() override {
+    is_made_ = false;
+    if (kept_ && kept_->has_borrowed_order()) kept_.reset();
+  }
   [[nodiscard]] bool keeps_factor() const override { return is_made_ && wasted_iterations_ <= price_of_new_; }
 
  private:
   /// Take new patterns: the preconditioner stays in use while it is good.
   void fit_pattern(const Step& step) {
-    if (!kept_ || !kept_->serves(step)) kept_ = std::make_unique<KeptPreconditioner>(model_, system_, method_, step);
+    if (kept_ && kept_->serves(step)) return;
+    kept_ = std::make_unique<KeptPreconditioner>(model_, system_, method_, step, is_made_ ? kept_.get() : nullptr);
   }
   /// Return the iterations of a solve that a new preconditioner would have saved.
   [[nodiscard]] int wasted(const KrylovReport& report) const {

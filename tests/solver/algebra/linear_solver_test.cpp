@@ -241,6 +241,29 @@ TEST(BlockCholesky, HalvesOfASolveMakeProducts) {
   EXPECT_LT(nodes, system.pattern.nodes() / 2);
 }
 
+// The box once more, in the order of one without some cubes and of one with all nodes apart.
+TEST(BlockCholesky, TakesTheOrderOfAnotherPattern) {
+  const BlockSystem system(12, 9, 3);
+  const std::vector<int> cubes = cubes_of_box(12, 9, 3);
+  std::vector<int> fewer;
+  for (std::size_t k = 0; k < cubes.size(); ++k)
+    if (k / 8 % 12 != 5) fewer.push_back(cubes[k]);
+  const int nodes = system.pattern.nodes();
+  const BlockCholesky similar(pattern_of_groups(nodes, fewer, 8)), apart(pattern_of_groups(nodes, {}, 8));
+  const std::size_t own_size = BlockCholesky(system.pattern).factor_size();
+  for (const BlockCholesky* other : {&similar, &apart}) {
+    BlockCholesky cholesky(system.pattern, chosen_kernels(), other->positions());
+    ASSERT_TRUE(cholesky.factorise(system.values));
+    auto x = system.b;
+    cholesky.solve(x);
+    EXPECT_LT(system.error(x), 2e-6);
+    EXPECT_GE(cholesky.factor_size(), own_size / 2);
+    if (other == &similar) {
+      EXPECT_LT(cholesky.factor_size(), 3 * own_size / 2);
+    }
+  }
+}
+
 TEST(BlockCholesky, KeepsLessThanTheDenseFactor) {
   const BlockSystem system(24, 20, 2);
   const BlockCholesky cholesky(system.pattern);
