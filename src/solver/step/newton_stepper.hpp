@@ -43,9 +43,15 @@ class NewtonStepper final : public Stepper {
   [[nodiscard]] bool keeps_factor() const override { return directions_->keeps_factor(); }
 
  private:
+  struct Attempt;
   [[nodiscard]] Iterate forecast(const State& state, double duration_s) const;
-  std::optional<double> search_line(const Step& step, const Direction& direction, Iterate& at, Residual& now,
-                                    StepReport& report) const;
+  void start(const State& state, double duration_s, bool from_rest, Attempt& attempt) const;
+  bool iterate(Attempt& attempt);
+  bool improve(Attempt& attempt);
+  std::optional<double> search_line(const Direction& direction, Attempt& attempt) const;
+  void take_residual(Attempt& attempt) const;
+  bool settle_contacts(Attempt& attempt) const;
+  bool give_up(Attempt& attempt, StepReport::Status status) const;
   void accept(const State& state, const Step& step, double duration_s, TimeOrder order, Iterate at, State& next) const;
 
   const Model& model_;
