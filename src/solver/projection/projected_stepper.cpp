@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/algebra/krylov.hpp"
-
 namespace plica {
 namespace {
 
@@ -22,6 +20,23 @@ std::span<const Vec3> as_vectors(const KrylovVector& vector) {
   return {reinterpret_cast<const Vec3*>(vector.data()), vector.size() / 3};
 }
 
+/// Inverses of these blocks of the tangent of all laws, held directions replaced by the identity.
+std::vector<Mat3> inverse_diagonal(const Model& model, const Step& step) {
+  DiagonalBlocks diagonal(step.positions.size());
+  for_laws(model, step, [&](const Law& law, const Step& law_step) { law.add_tangent(law_step, diagonal); });
+  for (std::size_t n = 0; n < diagonal.blocks.size(); ++n) {
+    Mat3& block = diagonal.blocks[n];
+    for (int axis = 0; axis < 3; ++axis)
+      if (model.held[n][axis]) {
+        block.row(axis).setZero();
+        block.col(axis).setZero();
+        block(axis, axis) = 1;
+      }
+    block = block.inverse().eval();
+  }
+  return std::move(diagonal.blocks);
+}
+
 }  // namespace
 
 LinearlyImplicit::LinearlyImplicit(const Model& model, double tolerance, int most_iterations)
@@ -35,43 +50,15 @@ void LinearlyImplicit::keep_held(std::span<Vec3> vectors) const {
 
 StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool /*from_rest*/, State& next,
                                      const Model* grown) {
-  const std::size_t nodes = state.positions.size();
   Step step{state.positions, state.positions, state.velocities, duration_s, state.time_s + duration_s};
   step.semidefinite_tangent = true;
   step.internals = state.internals;
   step.grown = grown;
-  StepReport report;
-  KrylovVector forces(3 * nodes, 0.0);
+  KrylovVector forces(3 * state.positions.size(), 0.0), displacements;
   for_laws(model_, step, [&](const Law& law, const Step& law_step) { law.add_forces(law_step, as_vectors(forces)); });
   keep_held(as_vectors(forces));
-
-  DiagonalBlocks diagonal(nodes);
-  for_laws(model_, step, [&](const Law& law, const Step& law_step) { law.add_tangent(law_step, diagonal); });
-  for (std::size_t n = 0; n < nodes; ++n) {
-    Mat3& block = diagonal.blocks[n];
-    for (int axis = 0; axis < 3; ++axis)
-      if (model_.held[n][axis]) {
-        block.row(axis).setZero();
-        block.col(axis).setZero();
-        block(axis, axis) = 1;
-      }
-    block = block.inverse().eval();
-  }
-
-  const auto multiply = [&](const KrylovVector& direction, KrylovVector& product) {
-    std::ranges::fill(product, 0.0);
-    for_laws(model_, step, [&](const Law& law, const Step& law_step) {
-      law.add_tangent_product(law_step, as_vectors(direction), as_vectors(product));
-    });
-    keep_held(as_vectors(product));
-  };
-  const auto precondition = [&](const KrylovVector& residual, KrylovVector& result) {
-    for (std::size_t n = 0; n < nodes; ++n) as_vectors(result)[n] = diagonal.blocks[n] * as_vectors(residual)[n];
-  };
-  KrylovVector displacements;
-  const KrylovReport solved = conjugate_gradients(
-      multiply, precondition, forces, {.tolerance = tolerance_, .most_iterations = most_iterations_},
-      [&](const KrylovReport&) { return !(stop_requested_ && stop_requested_()); }, displacements);
+  const KrylovReport solved = solve(step, forces, displacements);
+  StepReport report;
   report.newton_iterations = 1;
   report.linear_solves = solved.iterations;
   report.residual = solved.residual;
@@ -82,9 +69,8 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
     report.cell = cell_with_largest(model_.tissue, as_vectors(forces));
     return report;
   }
-
   next.positions = state.positions;
-  for (std::size_t n = 0; n < nodes; ++n) next.positions[n] += as_vectors(displacements)[n];
+  for (std::size_t n = 0; n < next.positions.size(); ++n) next.positions[n] += as_vectors(displacements)[n];
   next.time_s = state.time_s + duration_s;
   next.multipliers.assign(state.multipliers.size(), 0.0);
   next.obstacle_forces.assign(state.obstacle_forces.size(), 0.0);
@@ -94,6 +80,23 @@ StepReport LinearlyImplicit::advance(const State& state, double duration_s, bool
   record_motion(state, duration_s, TimeOrder::first, next);
   report.status = StepReport::Status::converged;
   return report;
+}
+
+KrylovReport LinearlyImplicit::solve(const Step& step, const KrylovVector& forces, KrylovVector& displacements) const {
+  const auto multiply = [&](const KrylovVector& direction, KrylovVector& product) {
+    std::ranges::fill(product, 0.0);
+    for_laws(model_, step, [&](const Law& law, const Step& law_step) {
+      law.add_tangent_product(law_step, as_vectors(direction), as_vectors(product));
+    });
+    keep_held(as_vectors(product));
+  };
+  const std::vector<Mat3> inverse = inverse_diagonal(model_, step);
+  const auto precondition = [&](const KrylovVector& residual, KrylovVector& result) {
+    for (std::size_t n = 0; n < inverse.size(); ++n) as_vectors(result)[n] = inverse[n] * as_vectors(residual)[n];
+  };
+  return conjugate_gradients(
+      multiply, precondition, forces, {.tolerance = tolerance_, .most_iterations = most_iterations_},
+      [&](const KrylovReport&) { return !(stop_requested_ && stop_requested_()); }, displacements);
 }
 
 ProjectedStepper::ProjectedStepper(const Model& model, std::unique_ptr<Stepper> force_step,

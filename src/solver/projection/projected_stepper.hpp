@@ -1,6 +1,7 @@
 // Time stepping of the paper (2.5, 2.7). Theory: docs/theory/paper_algorithm.md.
 #pragma once
 
+#include "solver/algebra/krylov.hpp"
 #include "solver/projection/volume_projection.hpp"
 #include "solver/step/stepper.hpp"
 
@@ -20,6 +21,7 @@ class LinearlyImplicit final : public Stepper {
 
  private:
   void keep_held(std::span<Vec3> vectors) const;  // sets held directions to zero
+  KrylovReport solve(const Step& step, const KrylovVector& forces, KrylovVector& displacements) const;
 
   const Model& model_;
   double tolerance_;
