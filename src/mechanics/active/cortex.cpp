@@ -89,7 +89,7 @@ std::optional<double> Cortex::activity_of(CellId cell, double time_s, std::span<
 double Cortex::rest_area_before(std::size_t face, const Step& step) const {
   if (!flows()) return rest_areas_[face];
   const Memory remembered = memory(step.internal);
-  return rest_areas_[face] * ((1 + step.ahead) * remembered.areas[face] - step.ahead * remembered.areas_before[face]);
+  return rest_areas_[face] * step.extrapolated(remembered.areas[face], remembered.areas_before[face]);
 }
 
 // Activity of a cell, without its strength.
