@@ -109,6 +109,7 @@ Checkpoint marked(Checkpoint checkpoint) {
   run.state.obstacle_forces = {0.5, 0, 2};
   run.state.on_obstacle = {1, 0, 1};
   run.state.internals = {{1, 2}, {}, {3}};
+  run.careful_steps = 3;
   run.pace.since_s = 1.5;
   run.outside_arrays = {{"signal", {0.5, 2}}, {"time of birth", {1, 3}}};
   run.whole_internals = {{6}, {7, 8}, {}};

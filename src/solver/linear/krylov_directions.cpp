@@ -21,13 +21,20 @@ double useful_tolerance(const Residual& residual, const NewtonDirections::Forcin
   return std::clamp(forcing.relative_tolerance, useful, 0.1);
 }
 
-/// Return the accuracy of the full system that gives its forces `accuracy`. In a short step drag makes the system
-/// stiff, and errors of constraints weigh thousands of times those of forces. (Up to a factor of a thousand, their
-/// weights leave forces accurate enough.)
-double accuracy_of_whole(double accuracy, const KrylovVector& right, std::size_t nodes) {
+/// Return the part of the right side's norm that forces have; the rest are errors of constraints, in units of
+/// pressures.
+double share_of_forces(const KrylovVector& right, std::size_t nodes) {
   const std::span<const double> all(right), forces = all.first(3 * nodes);
-  const double share = std::sqrt(parallel_dot(forces, forces) / parallel_dot(all, all));
-  return share < 1e-3 ? accuracy * 1e3 * share : accuracy;
+  return std::sqrt(parallel_dot(forces, forces) / parallel_dot(all, all));
+}
+
+/// Relative tolerance of the full system. In a short step drag makes it stiff, and errors of constraints weigh
+/// thousands of times those of forces (up to a factor of a thousand, their weights leave forces accurate enough).
+/// Forces have to be solved as well: a direction that mends constraints alone may raise the residual at every length.
+double tolerance_of_whole(const Residual& residual, NewtonDirections::ForcingTermInput forcing, double share) {
+  constexpr double least_share = 1e-3, part_unsolved = 0.3;
+  if (share < least_share) forcing.relative_tolerance *= share / least_share;
+  return std::min(useful_tolerance(residual, forcing), part_unsolved * std::max(share, least_share));
 }
 
 /// Part of the iterations of a solve to 1e-4 that a solve to this residual takes, if each reduces it alike.
@@ -103,10 +110,10 @@ class KrylovDirections final : public NewtonDirections {
     while (true) {
       system_.set_units(kept_->weights());  // and not on the way, should weights become others
       const KrylovVector right = system_.right_side(residual);
-      const double accuracy = accuracy_of_whole(forcing.relative_tolerance, right, solve.at.positions.size());
+      const double share = share_of_forces(right, solve.at.positions.size());
       solve.report = solver_.solve(
           multiply, [&](const KrylovVector& r, KrylovVector& z) { kept_->apply(r, z); }, right,
-          {.tolerance = useful_tolerance(residual, {forcing.residual_reduction, accuracy})}, go_on, solve.solution);
+          {.tolerance = tolerance_of_whole(residual, forcing, share)}, go_on, solve.solution);
       solve.cost.linear_solves += solve.report.iterations;
       if (solve.report.converged) return;
       if (is_indefinite) {

@@ -146,8 +146,8 @@ bool NewtonStepper::improve(Attempt& a) {
   a.residual_reduction = a.now.merit() / before;
   // Slow iterations do not halve the residual; those with short searches that hardly reduce it count as several: beyond
   // a limit point there is no solution nearby, and half the step finds one sooner.
-  constexpr int slow_ones_of_a_short_search = 6;
-  constexpr double short_search = 0.1, hardly_reduced = 0.9;
+  constexpr int slow_ones_of_a_short_search = 4;
+  constexpr double short_search = 0.1, hardly_reduced = 0.95;
   const bool is_short = *part < short_search && a.residual_reduction > hardly_reduced;
   a.slow_iterations = a.residual_reduction > 0.5 ? a.slow_iterations + (is_short ? slow_ones_of_a_short_search : 1) : 0;
   return true;
