@@ -82,7 +82,7 @@ nb::tuple hexahedra_of(const std::shared_ptr<const GivenPrisms>& prisms) {
   for (const auto& element : tissue.elements)
     for (const NodeId node : element) nodes.push_back(node.index());
   for (const CellId cell : tissue.element_cell) cells.push_back(cell.index());
-  return nb::make_tuple(points, nodes, cells, tissue.remarks);
+  return nb::make_tuple(points, nodes, cells);
 }
 
 CheckedScenario load(const std::string& name, const std::string& file, const std::string& text,

@@ -28,6 +28,7 @@ from .simulation import Simulation, Step, load
 from .study import Study
 from .studies import Calibration, Comparison, Trial, calibrate, compare
 from .tissue import Tissue
+from .volumes import tissue_of_labels
 
 __all__ = [
     "Calibration",
@@ -65,5 +66,6 @@ __all__ = [
     "posterior",
     "render",
     "reproduce",
+    "tissue_of_labels",
     "verdict",
 ]
