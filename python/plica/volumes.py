@@ -15,7 +15,7 @@ from .polygons import check_keep
 from .voxel_labels import Labels, numbered_volume
 from .voxel_layer import Layer, layer_of
 from .voxel_repair import repaired_labels
-from .voxel_sides import FIRST, SECOND, Floats
+from .voxel_sides import FIRST, SECOND, Floats, sides_of
 from .voxel_surfaces import RIM, Integers, face_places, steps_of
 
 __all__ = ["tissue_of_labels"]
@@ -96,7 +96,11 @@ def tissue_of_labels(
     volumes = np.bincount(labels.numbers.ravel(), minlength=labels.cells + 2)[:labels.cells + 1] * float(np.prod(spacing)) \
         if labels.numbers.size < 2**25 else _volumes(labels, spacing)
     contacts = contact_areas(labels.numbers, labels.cells, spacing)
-    layer = layer_of(labels.numbers, labels.cells, spacing, volumes, contacts)
+    sides = sides_of(labels.numbers, labels.cells, spacing)
+    if not sides.spans.any():
+        raise ValueError("volume: no cell reaches from one free side to the other; give one layer of cells, with background on both sides"
+                         f"{_cut_text(labels)}")
+    layer = layer_of(labels.numbers, sides, spacing, volumes, contacts)
     first_is_apical = _first_is_apical(layer, labels, spacing, apical if isinstance(apical, str) else None, marker)
     kept = _kept(layer, labels, keep)
     tissue = _tissue(layer, labels, spacing, volumes, kept, first_is_apical)
@@ -152,9 +156,6 @@ def _first_is_apical(layer: Layer, labels: Labels, spacing: Floats, apical: Opti
     sides = layer.sides
     inner = sides.spans[sides.faces.cell]
     area = [float(np.linalg.norm(sides.normals[inner & (sides.side == side)], axis=1).sum()) for side in (FIRST, SECOND)]
-    if min(area) == 0:
-        raise ValueError("volume: no cell reaches from one free side to the other; give one layer of cells with background on both sides"
-                         f"{_cut_text(labels)}")
     if marker is not None:
         return _first_is_brighter(layer, labels, marker)
     bend = (area[0] - area[1]) / np.mean(area)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from .errors import needed
 from .voxel_columns import counterparts, extended, fitted_corners, parted_meetings, ring_of, settled
-from .voxel_sides import FIRST, SECOND, Floats, Halfway, Sides, sides_of
+from .voxel_sides import FIRST, SECOND, Floats, Halfway, Sides
 from .voxel_surfaces import RIM, Integers, Meetings, face_places, meetings_of, places_of, steps_of
 
 BEND = 0.1    # of the width of a cell: free outlines are followed to within this distance
@@ -30,14 +30,13 @@ class Layer(NamedTuple):
     spacing: Floats
 
 
-def layer_of(numbers: NDArray[Any], cells: int, spacing: Floats, volumes: Floats, contacts: dict[tuple[int, int], float]) -> Layer:
-    """Return the layer of cells 1 to `cells`. The volume has a margin of background, or of `cells` + 1 beyond the image."""
-    sides = sides_of(numbers, cells, spacing)
+def layer_of(numbers: NDArray[Any], sides: Sides, spacing: Floats, volumes: Floats, contacts: dict[tuple[int, int], float]) -> Layer:
+    """Return the layer of cells of which some span both sides. The volume has a margin of background, or beyond the image."""
+    cells = len(volumes) - 1
     area = np.linalg.norm(sides.normals, axis=1)
     of_cell = np.column_stack([np.bincount(sides.faces.cell[sides.side == side], weights=area[sides.side == side], minlength=cells + 1)
                                for side in (FIRST, SECOND)])
-    usual = of_cell[sides.spans].mean(axis=1) if sides.spans.any() else of_cell[1:].max(axis=1)
-    width = float(np.sqrt(np.median(usual)))
+    width = float(np.sqrt(np.median(of_cell[sides.spans].mean(axis=1))))
     height = float(np.median(volumes[1:][volumes[1:] > 0])) / width**2
     halfway = Halfway(sides, numbers.shape, spacing, height).faces(numbers, cells)
     meetings = {side: parted_meetings(meetings_of(faces, numbers.shape, spacing), contacts)

@@ -221,7 +221,8 @@ ScenarioTable embryo_table() {
           {.shapes = {"file"}}),
       row("axes", &E::axes, anything,
           "Names of x, y and z in reports and pictures: `low-high`, or one word. Default: `[\"x\", \"y\", \"z\"]` for "
-          "a block, sheet, points or surface, else `[\"anterior-posterior\", \"left-right\", \"ventral-dorsal\"]`. "
+          "a block, sheet, points, surface or prisms, else `[\"anterior-posterior\", \"left-right\", "
+          "\"ventral-dorsal\"]`. "
           "`ventral-dorsal` as z: reports describe a furrow."),
   };
   info.rules = [](Scenario& scenario, Input& input) {
