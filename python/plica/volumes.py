@@ -24,7 +24,7 @@ FLAT = 0.04          # difference of the areas of both sides, over their mean; l
 CLEAR = 1.15         # ratio of a marker on both sides that tells which is apical
 ONE_WAY = 0.3        # mean of normals; less and the layer faces all ways
 LARGE_CELL = 2.0     # times the volume of a usual cell: two cells may have one label
-FEW_OPEN_EDGES = 14  # around an opening as small as missing cells leave
+OPENING = 1.5        # widths of a cell from the middle of an opening as small as missing cells leave
 DIRECTIONS = {f"{sign}{axis}": (place, 1 if sign == "+" else -1) for place, axis in enumerate("zyx") for sign in "+-"}
 SIDES = "\"outside\" or \"inside\" (of the bend), or a direction: \"+z\", \"-z\", \"+y\", \"-y\", \"+x\", \"-x\""
 
@@ -93,10 +93,9 @@ def tissue_of_labels(
     marker = None if apical is None or isinstance(apical, str) else _marker(apical, volume)
     given = numbered_volume(volume, background, keep_cut)
     labels = repaired_labels(given, gap_px, spacing)
-    volumes = np.bincount(labels.numbers.ravel(), minlength=labels.cells + 2)[:labels.cells + 1] * float(np.prod(spacing)) \
-        if labels.numbers.size < 2**25 else _volumes(labels, spacing)
+    volumes = _volumes(labels, spacing)
     contacts = contact_areas(labels.numbers, labels.cells, spacing)
-    sides = sides_of(labels.numbers, labels.cells, spacing)
+    sides = sides_of(labels.numbers, labels.cells, spacing, np.array(list(contacts), dtype=np.int64).reshape(-1, 2))
     if not sides.spans.any():
         raise ValueError("volume: no cell reaches from one free side to the other; give one layer of cells, with background on both sides"
                          f"{_cut_text(labels)}")
@@ -286,6 +285,9 @@ def _tell(tissue: LabelledTissue, layer: Layer, labels: Labels, volumes: Floats,
     lopsided = [cell for cell in kept if not layer.sides.spans[cell] and not any(RIM in layer.cells[column] for column in layer.rings[cell])]
     if lopsided:
         labels.remarks.append(f"{_cells(lopsided, labels)} do not reach both sides; their corners there follow their neighbours'")
+    moved = sorted({*layer.evened} & {*kept})
+    if moved:
+        labels.remarks.append(f"{_cells(moved, labels)} would have been turned over on a side: their corners there were evened out")
     pairs = one_sided_pairs(layer, kept)
     if pairs:
         named = ", ".join(" and ".join(str(labels.names[cell - 1]) for cell in pair) for pair in pairs[:3])
@@ -336,5 +338,5 @@ def _openings(layer: Layer, kept: list[int]) -> list[list[int]]:
                 reached += beside[column]
         loops.append(sorted(loop))
         left -= loop
-    outer = max(map(len, loops), default=0)
-    return [loop for loop in loops if len(loop) <= FEW_OPEN_EDGES and (len(loop) < outer or len(loops) > 2)]
+    reach = [np.linalg.norm(layer.middle[loop] - layer.middle[loop].mean(axis=0), axis=1).mean() for loop in loops]
+    return [loop for loop, far in zip(loops, reach) if far < OPENING * layer.width]

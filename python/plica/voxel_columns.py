@@ -14,6 +14,8 @@ from .voxel_surfaces import RIM, Faces, Integers, Meetings, steps_of
 FIT_RADIUS = 0.3     # of the width of a cell: planes are fitted to faces up to this far from a corner
 FARTHEST_FIT = 2.5   # voxels between a corner and the mean of its voxels; farther, the fit is wrong
 THIN_FIT = 0.15      # of the radius: narrower walls count less
+LEAST_FAN = 0.03     # of the middle height, that a part of a polygon about its middle keeps
+MOST_EVENINGS = 30
 SETTLING = 0.4      # weight of corners' moves beside the gaps between polygons and labels
 CHUNK = 3_000_000    # voxels about corners that are read at once
 
@@ -181,6 +183,41 @@ def extended(places: Floats, middles: Floats, joined: Integers) -> Floats:
         ways[gains] = sums[gains] / number[gains, None]
         known |= gains
     return middles + ways
+
+
+def evened(places: Floats, middles: Floats, rings: dict[int, list[int]]) -> tuple[Floats, list[int]]:
+    """Return places of which no polygon is turned over, and the cells whose corners moved for that.
+
+    Ways from the middle are averaged over neighbouring corners, so that polygons become more like those of the middle height.
+    """
+    ways = places - middles
+    turned = [cell for cell, ring in rings.items() if _is_turned((middles + ways)[ring], middles[ring])]
+    moved = set(turned)
+    for _ in range(MOST_EVENINGS):
+        if not turned:
+            break
+        sums, number = np.zeros_like(ways), np.zeros(len(ways))
+        for cell in turned:
+            ring = np.array(rings[cell])
+            for shift in (-1, 0, 1):
+                np.add.at(sums, ring, ways[np.roll(ring, shift)])
+                np.add.at(number, ring, 1)
+        ways[number > 0] = sums[number > 0] / number[number > 0, None]
+        changed = set(np.flatnonzero(number > 0).tolist())
+        turned = [cell for cell, ring in rings.items() if not changed.isdisjoint(ring) and _is_turned((middles + ways)[ring], middles[ring])]
+        moved |= {*turned}
+    return middles + ways, sorted(moved)
+
+
+def _is_turned(corners: Floats, middles: Floats) -> bool:
+    """Return whether a part of a polygon, about its middle, is turned over or nearly so beside the one of the middle height."""
+    fans = []
+    for polygon in (corners, middles):
+        spokes = polygon - polygon.mean(axis=0)
+        fans.append(np.cross(spokes, np.roll(spokes, -1, axis=0)))
+    normal = fans[1].sum(axis=0)
+    areas, usual = fans[0] @ normal, float(normal @ normal) / len(middles)
+    return bool(areas.min() < LEAST_FAN * usual)
 
 
 def ring_of(arcs: list[tuple[int, int, int]]) -> list[int]:

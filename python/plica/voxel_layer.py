@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import needed
-from .voxel_columns import counterparts, extended, fitted_corners, parted_meetings, ring_of, settled
+from .voxel_columns import counterparts, evened, extended, fitted_corners, parted_meetings, ring_of, settled
 from .voxel_sides import FIRST, SECOND, Floats, Halfway, Sides
 from .voxel_surfaces import RIM, Integers, Meetings, face_places, meetings_of, places_of, steps_of
 
@@ -23,6 +23,7 @@ class Layer(NamedTuple):
     fitted: NDArray[np.bool_]       # by column: whether labels have its corners on both sides
     cells: list[frozenset[int]]     # that meet at each column
     rings: dict[int, list[int]]
+    evened: list[int]               # cells whose polygons would have been turned over
     sides: Sides
     meetings: dict[int, Meetings]   # by side; 0: halfway
     width: float                    # of a usual cell, µm
@@ -39,6 +40,9 @@ def layer_of(numbers: NDArray[Any], sides: Sides, spacing: Floats, volumes: Floa
     width = float(np.sqrt(np.median(of_cell[sides.spans].mean(axis=1))))
     height = float(np.median(volumes[1:][volumes[1:] > 0])) / width**2
     halfway = Halfway(sides, numbers.shape, spacing, height).faces(numbers, cells)
+    if not len(halfway.low):
+        raise ValueError("volume: the layer is one voxel thick, without a middle height; give finer voxels, or, of a flat layer, one plane to "
+                         "plica.polygons_of_labels")
     meetings = {side: parted_meetings(meetings_of(faces, numbers.shape, spacing), contacts)
                 for side, faces in ((0, halfway), *((side, sides.faces.select(sides.side == side)) for side in (FIRST, SECOND)))}
     columns, rings, bends = _rings(meetings[0], cells, numbers.shape, spacing, width)
@@ -47,9 +51,13 @@ def layer_of(numbers: NDArray[Any], sides: Sides, spacing: Floats, volumes: Floa
     joined = np.array([pair for ring in rings.values() for pair in zip(ring, ring[1:] + ring[:1])], dtype=np.int64).reshape(-1, 2)
     fitted = np.isfinite(places[0]).all(axis=1) & np.isfinite(places[1]).all(axis=1)
     middles = face_places(sides.faces, numbers.shape, spacing)
-    first, second = (settled(extended(place, middle, joined), rings, sides.faces.select(of), middles[of], sides.normals[of])
-                     for place, of in zip(places, (sides.side == FIRST, sides.side == SECOND)))
-    return Layer(first, second, middle, fitted, columns, rings, sides, meetings, width, height, spacing)
+    moved: set[int] = set()
+    for number, side in enumerate((FIRST, SECOND)):
+        of = sides.side == side
+        whole = settled(extended(places[number], middle, joined), rings, sides.faces.select(of), middles[of], sides.normals[of])
+        places[number], cells_moved = evened(whole, middle, rings)
+        moved |= {*cells_moved}
+    return Layer(places[0], places[1], middle, fitted, columns, rings, sorted(moved), sides, meetings, width, height, spacing)
 
 
 class _Bend(NamedTuple):

@@ -25,14 +25,11 @@ class Runs(NamedTuple):
 
 
 def repaired_labels(labels: Labels, gap_px: float, spacing: NDArray[np.float64]) -> Labels:
-    """Return labels without gaps between cells, each cell one piece without holes. `remarks` gets a line for each repair."""
-    numbers = labels.numbers.copy()
-    names = _without_pieces(numbers, labels)
-    labels = labels._replace(numbers=numbers, names=names)
-    if gap_px > 0:
-        _close_gaps(numbers, labels, gap_px, spacing)
-        names = _without_pieces(numbers, labels)
-    return labels._replace(names=names)
+    """Repair labels in place: no gaps between cells, each cell one piece without holes. `remarks` gets a line for each repair."""
+    labels = labels._replace(names=_without_pieces(labels))
+    if gap_px > 0 and _close_gaps(labels, gap_px, spacing):
+        labels = labels._replace(names=_without_pieces(labels))
+    return labels
 
 
 def runs_of(numbers: NDArray[Any]) -> Runs:
@@ -63,8 +60,9 @@ def _voxels(runs: Runs, chosen: NDArray[np.bool_]) -> Integers:
     return np.repeat(first - np.cumsum(length) + length, length) + np.arange(int(length.sum()))
 
 
-def _without_pieces(numbers: NDArray[Any], labels: Labels) -> NDArray[np.int64]:
+def _without_pieces(labels: Labels) -> NDArray[np.int64]:
     """Give small pieces, specks and holes to their surroundings, in place; large pieces become cells. Return the labels of cells."""
+    numbers = labels.numbers
     runs = runs_of(numbers)
     size = np.bincount(runs.piece, weights=runs.length).astype(np.int64)
     of, begin = np.zeros(len(size), dtype=np.int64), np.zeros(len(size), dtype=np.int64)
@@ -149,8 +147,12 @@ def _fill(numbers: NDArray[Any], voxels: Integers, beyond: int, background: bool
         voxels = voxels[~found]
 
 
-def _close_gaps(numbers: NDArray[Any], labels: Labels, gap_px: float, spacing: NDArray[np.float64]) -> None:
-    """Give background between cells to the nearest cell, in place: gaps up to twice `gap_px` wide, a morphological closing by boxes."""
+def _close_gaps(labels: Labels, gap_px: float, spacing: NDArray[np.float64]) -> bool:
+    """Give background between cells to the nearest cell: gaps up to twice `gap_px` wide, a morphological closing by boxes.
+
+    Return whether there was any.
+    """
+    numbers = labels.numbers
     radius = np.maximum(1, np.floor(gap_px * spacing.min() / spacing + 0.5)).astype(int)
     beyond = len(labels.names) + 1
     tissue = (numbers > 0) & (numbers != beyond)
@@ -163,6 +165,7 @@ def _close_gaps(numbers: NDArray[Any], labels: Labels, gap_px: float, spacing: N
     if len(gaps) > TOLD_GAPS * np.count_nonzero(tissue):
         labels.remarks.append(f"gaps between cells were closed: {len(gaps)} voxels, the first at {labels.where(_at(gaps[0], numbers.shape))}")
     _fill(numbers, gaps, beyond, background=False)
+    return len(gaps) > 0
 
 
 def _spread(mask: NDArray[np.bool_], radius: NDArray[np.int64]) -> NDArray[np.bool_]:

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from .errors import needed
 from .voxel_surfaces import Faces, Integers, components, edges_of, face_places, neighbours_in, steps_of
 
-LARGE_PATCH = 0.2    # of a cell's largest face: smaller ones are no side of it
+LARGE_PATCH = 0.05   # of a cell's largest free patch: smaller ones are no side of it
 SMOOTHINGS = 6       # of normals, over neighbouring faces
+ONE_WAY = 0.4        # length of the mean normal of a patch; less, and it is on no side
 RIM_COSINE = 0.5     # between the normal of a face and the axis of its cell: less is the rim
 MOST_COARSE = 6e6    # voxels of the grid on which distances from the sides are computed
 FEWEST_LEVELS = 6    # of that grid, through a cell
@@ -46,8 +47,8 @@ def free_faces(numbers: NDArray[Any], cells: int) -> tuple[Faces, Integers]:
     return faces.select(order), np.concatenate(sign)[order]
 
 
-def sides_of(numbers: NDArray[Any], cells: int, spacing: Floats) -> Sides:
-    """Return the two sides of a layer; which of them is apical is left open.
+def sides_of(numbers: NDArray[Any], cells: int, spacing: Floats, pairs: Integers) -> Sides:
+    """Return the two sides of a layer; which of them is apical is left open. `pairs` are cells that touch.
 
     Cells inside the layer have a free face on each side; these join over cells to the two sides. Free faces of cells at the
     rim are one: they are told apart by their normals and the directions of neighbours from side to side.
@@ -55,18 +56,16 @@ def sides_of(numbers: NDArray[Any], cells: int, spacing: Floats) -> Sides:
     faces, sign = free_faces(numbers, cells)
     shape = numbers.shape
     area = np.prod(spacing) / spacing[faces.axis]
-    edges = edges_of(faces, shape)
-    one, other = neighbours_in(edges)
+    one, other = neighbours_in(edges_of(faces, shape))
     same = faces.cell[one] == faces.cell[other]
     patch = components(one[same], other[same], len(faces.low))
     normals = _smoothed_normals(faces, sign * area, one, other)
-    side, spans = _side_of_patches(faces, area, patch, one[~same], other[~same], cells)
+    side, spans = _side_of_patches(faces, normals, patch, one[~same], other[~same], cells)
     side = side[patch]
-    axis, centre = _axes(faces, side, area, face_places(faces, shape, spacing), spans, numbers)
-    if not spans.all():
-        rest = ~spans[faces.cell]
-        along = (normals[rest] * axis[faces.cell[rest]]).sum(axis=1) / np.maximum(np.linalg.norm(normals[rest], axis=1), 1e-12)
-        side[rest] = np.where(along < -RIM_COSINE, FIRST, np.where(along > RIM_COSINE, SECOND, LATERAL))
+    axis = _axes(faces, side, area, face_places(faces, shape, spacing), spans, pairs)
+    rest = side == LATERAL
+    along = (normals[rest] * axis[faces.cell[rest]]).sum(axis=1) / np.maximum(np.linalg.norm(normals[rest], axis=1), 1e-12)
+    side[rest] = np.where(along < -RIM_COSINE, FIRST, np.where(along > RIM_COSINE, SECOND, LATERAL))
     return Sides(faces, side, normals, spans)
 
 
@@ -85,44 +84,50 @@ def _smoothed_normals(faces: Faces, area: Floats, one: Integers, other: Integers
     return normals
 
 
-def _side_of_patches(faces: Faces, area: Floats, patch: Integers, one: Integers, other: Integers,
+def _side_of_patches(faces: Faces, normals: Floats, patch: Integers, one: Integers, other: Integers,
                      cells: int) -> tuple[Integers, NDArray[np.bool_]]:
-    """Return the side of each free patch of a cell, and which cells have a patch on each."""
+    """Return the side of each free patch of a cell, and which cells have one on each.
+
+    A patch that faces all ways, such as one through a hole in the layer, is on no side.
+    """
     count = int(patch.max(initial=-1)) + 1
-    size = np.bincount(patch, weights=area, minlength=count)
+    size = np.bincount(patch, weights=np.linalg.norm(normals, axis=1), minlength=count)
+    way = np.column_stack([np.bincount(patch, weights=along, minlength=count) for along in normals.T])
     of_cell = np.zeros(count, dtype=np.int64)
     of_cell[patch] = faces.cell
-    largest = np.zeros(cells + 1)
-    np.maximum.at(largest, of_cell, size)
-    large = size > LARGE_PATCH * largest[of_cell]
-    double = np.bincount(of_cell[large], minlength=cells + 1) == 2
-    counts = large & double[of_cell]
-    joins = counts[patch[one]] & counts[patch[other]]
+    order = np.lexsort((-size, of_cell))
+    order = order[np.linalg.norm(way[order], axis=1) > ONE_WAY * size[order]]
+    first = np.flatnonzero(np.concatenate([[True], of_cell[order][1:] != of_cell[order][:-1]])) if len(order) else np.zeros(0, dtype=np.int64)
+    first = first[first + 1 < len(order)]
+    pair = np.column_stack([order[first], order[first + 1]])  # the largest two of each cell
+    opposite = (of_cell[pair[:, 0]] == of_cell[pair[:, 1]]) & ((way[pair[:, 0]] * way[pair[:, 1]]).sum(axis=1) < 0)
+    pair = pair[opposite & (size[pair[:, 1]] > LARGE_PATCH * size[pair[:, 0]])]
+    counts = np.zeros(count, dtype=bool)
+    counts[pair] = True
+    joins = counts[patch[one]] & counts[patch[other]] & ((way[patch[one]] * way[patch[other]]).sum(axis=1) > 0)
     group = components(patch[one[joins]], patch[other[joins]], count)
-    sizes = np.bincount(group[counts], minlength=count)
-    two = np.argsort(-sizes, kind="stable")[:2]
+    two = np.argsort(-np.bincount(group[counts], minlength=max(count, 2)), kind="stable")[:2]
     side = np.full(count, LATERAL)
     for number, which in zip((FIRST, SECOND), two):
         side[counts & (group == which)] = number
-    has = [np.bincount(of_cell[side == number], minlength=cells + 1) == 1 for number in (FIRST, SECOND)]
-    spans = has[0] & has[1]
+    spans = np.zeros(cells + 1, dtype=bool)
+    spans[of_cell[pair[side[pair].prod(axis=1) == FIRST * SECOND, 0]]] = True
     side[~spans[of_cell]] = LATERAL
     return side, spans
 
 
-def _axes(faces: Faces, side: Integers, area: Floats, places: Floats, spans: NDArray[np.bool_],
-          numbers: NDArray[Any]) -> tuple[Floats, Floats]:
+def _axes(faces: Faces, side: Integers, area: Floats, places: Floats, spans: NDArray[np.bool_], pairs: Integers) -> Floats:
     """Return the unit direction from the first to the second side of each cell, that of others from their neighbours."""
-    cells = len(spans) - 1
+    count = len(spans)
     middle = []
     for number in (FIRST, SECOND):
         of = side == number
-        weight = np.bincount(faces.cell[of], weights=area[of], minlength=cells + 1)
-        middle.append(np.column_stack([np.bincount(faces.cell[of], weights=area[of] * along[of], minlength=cells + 1)
+        weight = np.bincount(faces.cell[of], weights=area[of], minlength=count)
+        middle.append(np.column_stack([np.bincount(faces.cell[of], weights=area[of] * along[of], minlength=count)
                                        for along in places.T]) / np.maximum(weight, 1e-12)[:, None])
     axis = np.where(spans[:, None], middle[1] - middle[0], 0.0)
-    one, other = touching(numbers, cells).T
-    for _ in range(cells):
+    one, other = pairs.T
+    for _ in range(count):
         length = np.linalg.norm(axis, axis=1, keepdims=True)
         axis = np.divide(axis, length, out=np.zeros_like(axis), where=length > 0)
         known = length[:, 0] > 0
@@ -133,21 +138,7 @@ def _axes(faces: Faces, side: Integers, area: Floats, places: Floats, spans: NDA
         if not gains.any():
             break
         axis[gains] = sums[gains]
-    return axis, middle[0]
-
-
-def touching(numbers: NDArray[Any], cells: int) -> Integers:
-    """Return pairs of cells that share a face, the lower first, each once."""
-    keys = []
-    flat = numbers.reshape(-1)
-    for step in steps_of(numbers.shape):
-        one, other = flat[:-step], flat[step:]
-        found = np.flatnonzero((one != other) & (one > 0) & (other > 0))
-        pair = np.column_stack([one[found], other[found]]).astype(np.int64)
-        pair = pair[(pair <= cells).all(axis=1)]
-        keys.append(np.unique(pair.min(axis=1) * (cells + 1) + pair.max(axis=1)))
-    key = np.unique(np.concatenate(keys))
-    return np.column_stack([key // (cells + 1), key % (cells + 1)])
+    return axis
 
 
 class Halfway:
@@ -176,16 +167,9 @@ class Halfway:
 
     def faces(self, numbers: NDArray[Any], cells: int) -> Faces:
         """Return the faces halfway, with the cell of the voxel that is nearer to the first side."""
-        sign = self.nearer > 0
-        changes = np.zeros(sign.shape, dtype=bool)
-        for axis in range(3):
-            ahead, behind = [slice(None)] * 3, [slice(None)] * 3
-            ahead[axis], behind[axis] = slice(1, None), slice(None, -1)
-            differ = sign[tuple(ahead)] != sign[tuple(behind)]
-            changes[tuple(ahead)] |= differ
-            changes[tuple(behind)] |= differ
         ndimage = needed("scipy.ndimage", "cells of a volume")
-        changes = ndimage.binary_dilation(changes, np.ones((3, 3, 3), dtype=bool))
+        sign = (self.nearer > 0).astype(np.uint8)
+        changes = ndimage.maximum_filter(sign, 3) != ndimage.minimum_filter(sign, 3)
         blocks = np.column_stack(np.nonzero(changes)) * self.factor
         inside = np.column_stack([part.ravel() for part in np.indices(self.factor)])
         low, axes, cell = [], [], []
