@@ -16,7 +16,7 @@ from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaErr
 from .experiments import reproduce
 from .indices import SobolIndices
 from .labels import polygons_of_labels
-from .monolayers import polygons_of_monolayer
+from .monolayers import polygons_of_monolayer, tissue_of_monolayer
 from .outlines import polygons_of_outlines
 from .pictures import movie, render
 from .polygons import Polygons
@@ -67,5 +67,6 @@ __all__ = [
     "render",
     "reproduce",
     "tissue_of_labels",
+    "tissue_of_monolayer",
     "verdict",
 ]
