@@ -130,7 +130,7 @@ def outcome(plica, volume, spacing, apical):
 def main():
     import plica
 
-    count, seed = (int(word) for word in [*sys.argv[1:], "200", "1"][:2]) if len(sys.argv) < 3 else map(int, sys.argv[1:3])
+    count, seed = (int(word) for word in (sys.argv[1:] + ["200", "1"][len(sys.argv) - 1:])[:2])
     volumes = {(kind, spacing): drawn(kind, spacing, 3) for kind in ("cyst", "egg", "tube", "sheet") for spacing in ((0.5, 0.5, 0.5), FLAT)}
     ends = {"tissue": 0, "error": 0}
     for number in range(count):

@@ -157,3 +157,30 @@ class Tube(Drawn):
         z = min(outer * np.cos(half), (self.tube - self.height / 2) * np.cos(half)) if half < np.pi else -outer
         x = self.length / 2 - self.beyond
         return np.array([-x, -y, z]), np.array([x, y, outer])
+
+
+def pairs_of(tissue):
+    """Return pairs of labels of cells that share an edge."""
+    edges = {}
+    for cell, label in zip(tissue.cells, tissue.cell_data["label"]):
+        for pair in zip(cell.tolist(), np.roll(cell, -1).tolist()):
+            edges.setdefault(frozenset(pair), []).append(int(label))
+    assert max(map(len, edges.values())) == 2
+    return {tuple(sorted(cells)) for cells in edges.values() if len(cells) == 2}
+
+
+def disagreement(tissue, drawing, origin, apical):
+    """Return the share of pairs of neighbours, of both, that both have, and how far corners are from those of the drawing, µm."""
+    ours, theirs = pairs_of(tissue), drawing.neighbours()
+    of_column = {}
+    for cell, label in zip(tissue.cells, tissue.cell_data["label"]):
+        for column in cell.tolist():
+            of_column.setdefault(column, set()).add(int(label))
+    columns = {frozenset(cells): column for column, cells in of_column.items() if len(cells) == 3}
+    off = []
+    triples, places = drawing.corners()
+    for triple, (inner, _, outer) in zip(triples.tolist(), places - origin):
+        if (column := columns.get(frozenset(triple))) is not None:
+            top, bottom = (inner, outer) if apical == "inside" else (outer, inner)
+            off += [np.linalg.norm(tissue.apical[column] - top), np.linalg.norm(tissue.basal[column] - bottom)]
+    return len(ours & theirs) / len(ours | theirs), np.array(off)
