@@ -96,7 +96,7 @@ class Cyst(Drawn):
         super().__init__(count, **how)
 
     def radius(self, directions):
-        return 1 / np.sqrt(((directions / self.axes)**2).sum(axis=1))
+        return 1 / np.maximum(np.linalg.norm(directions / self.axes, axis=1), 1e-9)
 
     def surface(self, count):
         points = self.random.normal(size=(3 * count, 3))

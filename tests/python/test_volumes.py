@@ -72,7 +72,8 @@ def test_cells_have_their_numbers():
     assert set(tissue.cell_data["label"]) <= {1000 * label + 7 for label in range(1, 81)}
     assert np.median(tissue.cell_data["height_um"]) == pytest.approx(6, rel=0.05)
     assert np.median(tissue.cell_data["taper"]) == pytest.approx(15 / 9, rel=0.1)
-    assert tissue.cell_data["label_volume_um3"][0] == (labels == tissue.cell_data["label"][0] // 1000).sum() / 8
+    volume = (labels == tissue.cell_data["label"][0] // 1000).sum() / 8
+    assert tissue.cell_data["label_volume_um3"][0] == pytest.approx(volume, rel=0.02)  # but for stray voxels
 
 
 @pytest.mark.parametrize(("damage", "kind", "spacing", "said"), [
