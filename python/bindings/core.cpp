@@ -28,6 +28,7 @@
 #include "study/calibrate.hpp"
 #include "thread_count.hpp"
 #include "tissue/hexahedral_mesh.hpp"
+#include "tissue/shapes/given_prisms.hpp"
 
 namespace plica::python {
 namespace {
@@ -59,10 +60,36 @@ std::shared_ptr<const HexahedralMesh> mesh_of(const Numbers& points, const Whole
   return mesh;
 }
 
+/// Make prisms from arrays that have been checked: columns of corners, and those of each cell.
+std::shared_ptr<const GivenPrisms> prisms_of(const Numbers& apical, const Numbers& basal,
+                                             const std::vector<std::vector<std::size_t>>& cells,
+                                             const std::map<std::string, std::vector<double>>& arrays,
+                                             const std::vector<std::string>& remarks) {
+  return std::make_shared<const GivenPrisms>(
+      GivenPrisms{{positions_of(apical), positions_of(basal), cells}, arrays, remarks});
+}
+
+/// Return points, nodes of hexahedra and the cell of each, as made with the defaults of [embryo].
+nb::tuple hexahedra_of(const std::shared_ptr<const GivenPrisms>& prisms) {
+  Tissue tissue;
+  {
+    const nb::gil_scoped_release free;
+    tissue = build_prisms(*prisms, {}, true, {}).tissue;
+  }
+  std::vector<double> points;
+  for (const Vec3& x : tissue.rest_positions) points.insert(points.end(), x.begin(), x.end());
+  std::vector<std::size_t> nodes, cells;
+  for (const auto& element : tissue.elements)
+    for (const NodeId node : element) nodes.push_back(node.index());
+  for (const CellId cell : tissue.element_cell) cells.push_back(cell.index());
+  return nb::make_tuple(points, nodes, cells);
+}
+
 CheckedScenario load(const std::string& name, const std::string& file, const std::string& text,
                      const std::vector<std::string>& overrides, const std::map<std::string, std::vector<int>>& regions,
                      const std::map<std::string, std::vector<double>>& arrays,
-                     const std::shared_ptr<const HexahedralMesh>& mesh) {
+                     const std::shared_ptr<const HexahedralMesh>& mesh,
+                     const std::shared_ptr<const GivenPrisms>& prisms) {
   CheckedScenario checked{{name, file, text}, load_scenario({name, file, text}, overrides)};
   for (const auto& [region, ids] : regions) {
     checked.scenario.regions[region] = {};
@@ -70,6 +97,7 @@ CheckedScenario load(const std::string& name, const std::string& file, const std
   }
   checked.scenario.embryo.arrays = arrays;
   checked.scenario.embryo.mesh = mesh;
+  checked.scenario.embryo.prisms = prisms;
   set_default_shell(checked.scenario);
   return checked;
 }
@@ -183,6 +211,10 @@ NB_MODULE(_core, module) {
   module.attr("reads_meshes") = false;
 #endif
   nb::class_<HexahedralMesh>(module, "Mesh");
+  nb::class_<GivenPrisms>(module, "Prisms");
+  module.def("prisms", &prisms_of, nb::arg("apical"), nb::arg("basal"), nb::arg("cells"), nb::arg("arrays"),
+             nb::arg("remarks"));
+  module.def("hexahedra_of", &hexahedra_of, nb::arg("prisms"));
   module.def("mesh", &mesh_of, nb::arg("points"), nb::arg("hexahedra"), nb::arg("apical_faces"), nb::arg("arrays"),
              nb::arg("remarks"));
   nb::class_<CheckedScenario>(module, "Scenario")
@@ -218,7 +250,7 @@ NB_MODULE(_core, module) {
       },
       nb::arg("name_or_path"));
   module.def("load", &load, nb::arg("name"), nb::arg("file"), nb::arg("text"), nb::arg("overrides"), nb::arg("regions"),
-             nb::arg("arrays"), nb::arg("mesh").none());
+             nb::arg("arrays"), nb::arg("mesh").none(), nb::arg("prisms").none() = nb::none());
   module.def("calibrate", &calibration, nb::arg("scenario"), nb::arg("overrides"), nb::arg("vary"), nb::arg("targets"),
              nb::arg("most_trials"), nb::arg("on_trial"));
   module.def(

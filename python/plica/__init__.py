@@ -16,7 +16,7 @@ from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaErr
 from .experiments import reproduce
 from .indices import SobolIndices
 from .labels import polygons_of_labels
-from .monolayers import polygons_of_monolayer
+from .monolayers import polygons_of_monolayer, tissue_of_monolayer
 from .outlines import polygons_of_outlines
 from .pictures import movie, render
 from .polygons import Polygons
@@ -28,6 +28,7 @@ from .simulation import Simulation, Step, load
 from .study import Study
 from .studies import Calibration, Comparison, Trial, calibrate, compare
 from .tissue import Tissue
+from .volumes import tissue_of_labels
 
 __all__ = [
     "Calibration",
@@ -65,5 +66,7 @@ __all__ = [
     "posterior",
     "render",
     "reproduce",
+    "tissue_of_labels",
+    "tissue_of_monolayer",
     "verdict",
 ]

@@ -10,6 +10,7 @@ scenarios: dict[str, str]
 reads_meshes: bool
 
 class Mesh: ...
+class Prisms: ...
 
 class Scenario:
     title: str
@@ -86,6 +87,14 @@ def mesh(
     arrays: Mapping[str, Sequence[float]],
     remarks: Sequence[str],
 ) -> Mesh: ...
+def prisms(
+    apical: NDArray[np.float64],
+    basal: NDArray[np.float64],
+    cells: Sequence[Sequence[int]],
+    arrays: Mapping[str, Sequence[float]],
+    remarks: Sequence[str],
+) -> Prisms: ...
+def hexahedra_of(prisms: Prisms) -> tuple[list[float], list[int], list[int]]: ...
 def find(name_or_path: str) -> tuple[str, str, str]: ...
 def load(
     name: str,
@@ -95,6 +104,7 @@ def load(
     regions: Mapping[str, Sequence[int]],
     arrays: Mapping[str, Sequence[float]],
     mesh: Optional[Mesh],
+    prisms: Optional[Prisms] = None,
 ) -> Scenario: ...
 def calibrate(
     scenario: Scenario,

@@ -52,9 +52,8 @@ def _flat(image: ArrayLike) -> tuple[NDArray[Any], str]:
         labels, call = labels[..., 0], f"{call}[..., 0]"
     if labels.ndim == 3:
         raise ValueError(
-            f"image: shape {labels.shape}: a stack of planes; only flat label images of shape (rows, columns) are read. With "
-            "planes from apical to basal, numpy.take_along_axis(image, (image != 0).argmax(axis=0)[None], axis=0)[0] gives the "
-            "uppermost cell of each pixel; for tubes and cysts, make centres of cells a table for shape = \"points\"")
+            f"image: shape {labels.shape}: a stack of planes; only flat label images of shape (rows, columns) are read: "
+            "plica.tissue_of_labels makes cells of a stack")
     if labels.ndim != 2 or labels.size == 0 or labels.dtype.kind not in "biuf":
         raise ValueError(f"image: shape {labels.shape} of {labels.dtype}; give whole numbers of shape (rows, columns)")
     if labels.dtype.kind == "f":

@@ -10,11 +10,12 @@ import numpy as np
 
 from .errors import FileError, needed
 from .polygons import Polygons
+from .prisms import PrismTissue
 
 if TYPE_CHECKING:
     import pandas
 
-__all__ = ["polygons_of_monolayer"]
+__all__ = ["polygons_of_monolayer", "tissue_of_monolayer"]
 
 TABLES = ("vert", "edge", "face")
 
@@ -45,6 +46,56 @@ def polygons_of_monolayer(source: Union[str, os.PathLike[str], Mapping[str, pand
     --------
     >>> plica.polygons_of_monolayer("monolayer.hf5").write("cells.ply")  # doctest: +SKIP
     """
+    points, apical, basal, _ = _sides(source)
+    up = [points[apical[cell]].mean(axis=0) - points[basal[cell]].mean(axis=0) for cell in apical]
+    surface = Polygons(points, apical.values(), {"label": np.array(list(apical)), "height": np.linalg.norm(up, axis=1)})
+    outward = [_normal(points[face]) @ way for face, way in zip(surface.faces, up)]
+    if sum(outward) < 0:  # rings of tyssue run alike
+        surface.faces = [face[::-1] for face in surface.faces]
+    return surface.select(np.ones(len(surface), dtype=bool))
+
+
+def tissue_of_monolayer(source: Union[str, os.PathLike[str], Mapping[str, pandas.DataFrame], Any]) -> PrismTissue:
+    """Return the cells of a monolayer of tyssue as prisms, with the apical and basal corners that it has.
+
+    Parameters
+    ----------
+    source : path, mapping of str to pandas.DataFrame, or tyssue.Monolayer
+        As for `polygons_of_monolayer`.
+
+    Returns
+    -------
+    PrismTissue
+        `cell_data` has ``label``, the cell.
+
+    Raises
+    ------
+    FileError, ValueError
+        As `polygons_of_monolayer`; ValueError also if an apical corner is joined to no basal corner of its cell, or to two.
+
+    Examples
+    --------
+    >>> scenario = plica.Scenario({"format": 1}, tissue=plica.tissue_of_monolayer("monolayer.hf5"))  # doctest: +SKIP
+    """
+    points, apical, basal, joined = _sides(source)
+    below: dict[int, int] = {}
+    for cell, ring in apical.items():
+        for vertex in ring:
+            ends = sorted(joined.get(vertex, set()) & {*basal[cell]})
+            if len(ends) != 1 or below.setdefault(vertex, ends[0]) != ends[0]:
+                raise ValueError(f"monolayer: the apical vertex in row {vertex}, of cell {cell} is joined to basal vertices {ends}; each needs an edge "
+                                 "of a lateral face to one, the same for neighbours")
+    columns = np.array(sorted(below))
+    rings = []
+    for cell, ring in apical.items():
+        up = points[ring].mean(axis=0) - points[[below[vertex] for vertex in ring]].mean(axis=0)
+        rings.append(np.searchsorted(columns, ring if _normal(points[ring]) @ up > 0 else ring[::-1]))
+    return PrismTissue(points[columns], points[[below[vertex] for vertex in columns.tolist()]], rings,
+                       cell_data={"label": np.array(list(apical), dtype=np.float64)})
+
+
+def _sides(source: Any) -> tuple[Any, dict[Any, list[int]], dict[Any, list[int]], dict[int, set[int]]]:
+    """Return points, the apical and the basal ring of each cell, and the vertices joined to each by edges."""
     tables = _tables(source)
     vertices, edges, faces = (tables[name] for name in TABLES)
     for name, columns in zip(TABLES, (["x", "y", "z"], ["srce", "trgt", "face", "cell"], ["segment"])):
@@ -69,12 +120,12 @@ def polygons_of_monolayer(source: Union[str, os.PathLike[str], Mapping[str, pand
     if alone or not apical:
         which = f"cell {alone[0]} has no {'basal' if alone[0] in apical else 'apical'} face" if alone else "no face is apical"
         raise ValueError(f"monolayer: {which}; each cell needs one of each segment, \"apical\" and \"basal\"")
-    up = [points[apical[cell]].mean(axis=0) - points[basal[cell]].mean(axis=0) for cell in apical]
-    surface = Polygons(points, apical.values(), {"label": np.array(list(apical)), "height": np.linalg.norm(up, axis=1)})
-    outward = [_normal(points[face]) @ way for face, way in zip(surface.faces, up)]
-    if sum(outward) < 0:  # rings of tyssue run alike
-        surface.faces = [face[::-1] for face in surface.faces]
-    return surface.select(np.ones(len(surface), dtype=bool))
+    joined: dict[int, set[int]] = {}
+    for one, other in zip(edges["srce"], edges["trgt"]):
+        if one in number and other in number:
+            joined.setdefault(number[one], set()).add(number[other])
+            joined.setdefault(number[other], set()).add(number[one])
+    return points, apical, basal, joined
 
 
 def _normal(corners: Any) -> Any:

@@ -94,7 +94,7 @@ class Scenario:
         self._cells: tuple[object, int] = (None, 0)  # the embryo and its number of cells
         self._tissue = tissue
         if tissue is not None:
-            self._changes = {"embryo.shape": '"file"', "embryo.file": f'"{GIVEN}"'}
+            self._changes = {"embryo.shape": f'"{tissue.shape}"', "embryo.file": f'"{GIVEN}"'}
         self._load()
         for name, values in mapping_of({} if arrays is None else arrays, "arrays", "a mapping of names to arrays").items():
             self.set_array(name, values)
@@ -115,6 +115,7 @@ class Scenario:
             {name: np.flatnonzero(mask).tolist() for name, mask in regions.items()},
             {name: values.tolist() for name, values in arrays.items()},
             None if self._tissue is None else self._tissue._mesh,
+            None if self._tissue is None else self._tissue._prisms,
         )
         self._core, self._changes, self._regions, self._arrays = core, changes, regions, arrays
         self._resolved: Optional[dict[str, Any]] = None

@@ -7,10 +7,10 @@ import io
 import os
 import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +18,9 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .arguments import flags, integers, mapping_of, numbers, path_of, per_cell
 from .errors import FileError, needed
+
+if TYPE_CHECKING:
+    from .prisms import PrismTissue
 
 __all__ = ["Tissue"]
 
@@ -149,6 +152,44 @@ class Tissue:
             return tissue
         except (ValueError, TypeError) as error:
             raise FileError(f"{path}: {error}") from error
+
+    @classmethod
+    def from_prisms(cls, apical: ArrayLike, basal: ArrayLike, cells: Iterable[ArrayLike], *,
+                    regions: Optional[Mapping[str, ArrayLike]] = None, cell_data: Optional[Mapping[str, ArrayLike]] = None) -> PrismTissue:
+        """Return a tissue of prisms: cells between an apical and a basal polygon, whose walls may lean.
+
+        Parameters
+        ----------
+        apical, basal : array_like of float, shape (n, 3)
+            Both ends of each column, µm. Neighbours share columns.
+        cells : iterable of array_like of int
+            Columns of each cell, counter-clockwise seen from the apical side.
+        regions, cell_data
+            As for `Tissue`.
+
+        Raises
+        ------
+        ValueError
+            If an array has the wrong shape or type. Other defects are reported by `Scenario`.
+
+        Examples
+        --------
+        >>> import plica
+        >>> square = [[0, 0], [10, 0], [10, 10], [0, 10]]
+        >>> apical, basal = [[2 * x, 2 * y, 30] for x, y in square], [[x, y, 0] for x, y in square]
+        >>> plica.Tissue.from_prisms(apical, basal, [[0, 1, 2, 3]])
+        PrismTissue(1 cells, 4 columns)
+        """
+        from .prisms import PrismTissue
+
+        return PrismTissue(apical, basal, cells, regions=regions, cell_data=cell_data)
+
+    @property
+    def shape(self) -> str:
+        """Value of ``embryo.shape`` for this tissue."""
+        return "file"
+
+    _prisms: Optional[_core.Prisms] = None
 
     @cached_property
     def _mesh(self) -> _core.Mesh:

@@ -62,7 +62,7 @@ const EmbryoAxes& plain_axes() {
 EmbryoAxes axes_of(const EmbryoInput& embryo) {
   if (embryo.axes.empty()) {
     const EmbryoShape shape = shape_of(embryo);
-    const bool is_embryo = shape != EmbryoShape::points && shape != EmbryoShape::surface && !is_patch(shape);
+    const bool is_embryo = shape == EmbryoShape::file || (!is_from_file(shape) && !is_patch(shape));
     return is_embryo ? anatomical_axes() : plain_axes();
   }
   EmbryoAxes axes;

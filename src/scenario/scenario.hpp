@@ -11,6 +11,7 @@
 
 namespace plica {
 
+struct GivenPrisms;
 struct HexahedralMesh;
 
 using Range = std::array<double, 2>;  // low, high
@@ -38,10 +39,10 @@ struct RegionInput {
   std::vector<std::string> unite, intersect, except;  // TOML keys: union, intersect, except
 };
 
-enum class EmbryoShape { pill, sphere, slice, block, egg, points, sheet, surface, file };
+enum class EmbryoShape { pill, sphere, slice, block, egg, points, sheet, surface, prisms, file };
 
 struct EmbryoInput {
-  std::string shape = "pill";  // pill | sphere | slice | block | egg | points | sheet | surface | file
+  std::string shape = "pill";  // pill | sphere | slice | block | egg | points | sheet | surface | prisms | file
   double length_um = 460;      // pill, slice, block, egg, sheet: along x
   double diameter_um = 280;    // pill, sphere, slice, egg
   double width_um = 20;        // block, sheet: along y
@@ -56,22 +57,23 @@ struct EmbryoInput {
   double least_edge_ratio = 0.3;                    // polygons: relative to the mean; shorter edges are lengthened
   int layers = 1;                                   // polygons: elements from basal to apical
   std::vector<double> curvature_per_um = {0, 0};    // sheet: along x and y; positive as on an embryo
-  std::string rim = "free";                         // sheet, surface: free | held
+  std::string rim = "free";                         // sheet, surface, prisms: free | held
   std::vector<std::string> periodic;                // sheet: x, y: periodic directions
   std::string cell_height_array;                    // surface: array of heights; empty: cell_height_um
-  bool mend = true;                                 // surface: whether the mesh is repaired
+  bool mend = true;                                 // surface, prisms: whether the mesh is repaired
   bool centre = false;                              // from a file: whether its centre is moved to the origin
   std::vector<double> scale = {1, 1, 1};            // from a file
   std::vector<double> rotate_deg = {0, 0, 0};       // from a file: about x, then y, then z
   std::string keep = "all";                         // surface, file: all | largest: pieces that become cells
   std::string label_array;                          // surface: faces of one number are a cell; empty: each face is
   double points_depth_um = 0;                       // points: below the apical surface, before scaling
-  std::string file;               // "file": hexahedral mesh read by VTK; "points": table; "surface": polygons
+  std::string file;               // "file": hexahedral mesh read by VTK; "points": table; others: polygons
   std::string apical_array;       // shape = "file": cell array with the face index 0-5 (VTK order) of the apical face;
                                   // empty: the outer surface
   std::string cell_arrays;        // table with one row per cell; its columns become arrays
   std::vector<std::string> axes;  // names of the ends of x, y, z ("low-high", or one word); empty: by the shape
   std::shared_ptr<const HexahedralMesh> mesh;         // replaces the file; set by programs, not in TOML
+  std::shared_ptr<const GivenPrisms> prisms;          // likewise
   std::map<std::string, std::vector<double>> arrays;  // cells; besides those of files; set by programs, not in TOML
 };
 

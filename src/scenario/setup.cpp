@@ -28,6 +28,7 @@
 #include "tissue/faces.hpp"
 #include "tissue/files/points_file.hpp"
 #include "tissue/files/polygon_file.hpp"
+#include "tissue/files/prism_file.hpp"
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
@@ -103,14 +104,22 @@ std::vector<double> heights_of(const Scenario& scenario, const PolygonFile& file
   throw_at(scenario, "embryo.cell_height_array", fmt::format("the file has no array \"{}\"", name), remedy);
 }
 
+Tissue fitting_shell(const Scenario& scenario, SurfaceTissue result) {
+  if (scenario.vitelline.enabled && !result.tissue.outer_shape)
+    throw_at(scenario, "vitelline.enabled", "no vitelline membrane fits: " + result.why_no_shape,
+             "set enabled to false");
+  return std::move(result.tissue);
+}
+
+PolygonFile polygons_of_file(const Scenario& scenario) try {
+  return read_polygon_file(scenario.embryo.file);
+} catch (const FileError& error) {
+  throw_at(scenario, "embryo.file", error.what(), "");
+}
+
 Tissue surface_tissue(const Scenario& scenario) {
   const EmbryoInput& e = scenario.embryo;
-  PolygonFile file;
-  try {
-    file = read_polygon_file(e.file);
-  } catch (const FileError& error) {
-    throw_at(scenario, "embryo.file", error.what(), "");
-  }
+  PolygonFile file = polygons_of_file(scenario);
   const std::string advice = e.label_array.empty() ? label_advice(file) : "";
   SurfaceTissue result;
   try {
@@ -125,10 +134,18 @@ Tissue surface_tissue(const Scenario& scenario) {
   if (!advice.empty()) file.remarks.push_back(advice);
   for (const auto& [name, values] : file.arrays) result.tissue.cell_arrays[name] = of_kept(values, result.kept);
   result.tissue.remarks.insert(result.tissue.remarks.begin(), file.remarks.begin(), file.remarks.end());
-  if (scenario.vitelline.enabled && !result.tissue.outer_shape)
-    throw_at(scenario, "vitelline.enabled", "no vitelline membrane fits: " + result.why_no_shape,
-             "set enabled to false");
-  return std::move(result.tissue);
+  return fitting_shell(scenario, std::move(result));
+}
+
+Tissue prism_tissue(const Scenario& scenario) {
+  const EmbryoInput& e = scenario.embryo;
+  const PolygonFile file = e.prisms ? PolygonFile() : polygons_of_file(scenario);
+  try {
+    GivenPrisms prisms = e.prisms ? *e.prisms : prisms_in(file);
+    return fitting_shell(scenario, build_prisms(std::move(prisms), placement_of(e), e.mend, cells_of(e)));
+  } catch (const MeshError& error) {
+    throw_at(scenario, "embryo.file", fmt::format("{}: {}", e.file, error.what()), "");
+  }
 }
 
 Tissue build_tissue(const Scenario& scenario) {
@@ -148,6 +165,8 @@ Tissue build_tissue(const Scenario& scenario) {
       return polygonal_tissue(scenario);
     case EmbryoShape::surface:
       return surface_tissue(scenario);
+    case EmbryoShape::prisms:
+      return prism_tissue(scenario);
     case EmbryoShape::file:
       break;
   }

@@ -72,6 +72,7 @@ inline constexpr auto embryo_shapes = std::to_array<Word<EmbryoShape>>({{"pill",
                                                                         {"points", EmbryoShape::points},
                                                                         {"sheet", EmbryoShape::sheet},
                                                                         {"surface", EmbryoShape::surface},
+                                                                        {"prisms", EmbryoShape::prisms},
                                                                         {"file", EmbryoShape::file}});
 
 inline constexpr auto polygon_splits =
@@ -184,7 +185,8 @@ inline bool is_of_grid(EmbryoShape shape) {
 }
 /// Whether a file defines the cells; it may have cell arrays.
 inline bool is_from_file(EmbryoShape shape) {
-  return shape == EmbryoShape::file || shape == EmbryoShape::points || shape == EmbryoShape::surface;
+  return shape == EmbryoShape::file || shape == EmbryoShape::points || shape == EmbryoShape::surface ||
+         shape == EmbryoShape::prisms;
 }
 /// Whether the shape is always open, so it encloses no volume.
 inline bool is_patch(EmbryoShape shape) { return shape == EmbryoShape::block || shape == EmbryoShape::sheet; }

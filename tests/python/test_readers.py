@@ -221,6 +221,21 @@ def test_monolayers_of_tyssue(tmp_path):
     assert list(plica.polygons_of_monolayer(tables).cell_data["label"]) == [20]
 
 
+def test_monolayers_as_prisms():
+    """Their corners stay where they are, and their volumes."""
+    tables = monolayer()
+    for flip in (False, True):
+        if flip:
+            tables["edge"][["srce", "trgt"]] = tables["edge"][["trgt", "srce"]].to_numpy()
+        tissue = plica.tissue_of_monolayer(tables)
+        assert tissue.volumes == pytest.approx([16 * 6.5, 16 * 7.5]) and list(tissue.cell_data["label"]) == [20, 21]
+        assert (tissue.apical[:, 2] == 0).all() and (tissue.basal[:, :2] == tissue.apical[:, :2]).all()
+        assert plica.Simulation(plica.Scenario({"format": 1}, tissue=tissue)).cell_data["volume_um3"] == pytest.approx(tissue.volumes)
+    tables["edge"].loc[tables["edge"]["trgt"] == 9, "trgt"] = 8
+    with pytest.raises(ValueError, match="monolayer: "):
+        plica.tissue_of_monolayer(tables)
+
+
 def test_monolayer_files(tmp_path):
     pytest.importorskip("tables")
     with warnings.catch_warnings():

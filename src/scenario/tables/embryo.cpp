@@ -14,8 +14,8 @@ using E = EmbryoInput;
 constexpr std::int64_t max_elements = 20'000'000;
 
 const std::vector<std::string_view> of_grid = {"pill", "sphere", "slice", "block"};  // shapes with cells on a grid
-const std::vector<std::string_view> of_polygons = {"egg", "points", "sheet", "surface"};
-const std::vector<std::string_view> of_file = {"file", "points", "surface"};
+const std::vector<std::string_view> of_polygons = {"egg", "points", "sheet", "surface", "prisms"};
+const std::vector<std::string_view> of_file = {"file", "points", "surface", "prisms"};
 const std::vector<std::string_view> built = {"pill", "sphere", "slice", "block",  // shapes built by plica
                                              "egg",  "points", "sheet", "surface"};
 
@@ -56,9 +56,10 @@ void check_embryo(Scenario& scenario, Input& input) {
   if (is_from_file(shape_of(embryo))) {
     if (embryo.file.empty() && sound("file"))
       input.report("embryo.file", "is missing",
-                   shape_of(embryo) == EmbryoShape::file     ? "set file to the mesh file for shape \"file\""
-                   : shape_of(embryo) == EmbryoShape::points ? "set file to the table of points for shape \"points\""
-                                                             : "set file to the polygon file for shape \"surface\"");
+                   shape_of(embryo) == EmbryoShape::file ? "set file to the mesh file for shape \"file\""
+                   : shape_of(embryo) == EmbryoShape::points
+                       ? "set file to the table of points for shape \"points\""
+                       : fmt::format("set file to the polygon file for shape \"{}\"", embryo.shape));
     check_length("embryo.scale", embryo.scale, 3, "set scale to three numbers, along x, y and z", input);
     check_length("embryo.rotate_deg", embryo.rotate_deg, 3, "set rotate_deg to three angles, about x, y and z", input);
     return;
@@ -140,7 +141,9 @@ ScenarioTable embryo_table() {
       row("shape", &E::shape, one_of(words::embryo_shapes),
           "Closed embryos: `pill` (spherocylinder), `sphere`, `egg` (polygonal cells), `points` (polygonal cells "
           "around measured points). `slice`: plane-strain cross-section of a long embryo. `block`: cuboid. `sheet`: "
-          "open sheet of polygonal cells. `surface`: one cell per polygon of a file. `file`: hexahedral mesh."),
+          "open sheet of polygonal cells. `surface`: one cell per polygon of a file. `prisms`: cells between apical "
+          "and "
+          "basal polygons of a file. `file`: hexahedral mesh."),
       row("length_um", &E::length_um, positive, "Length along x (µm).",
           {.shapes = {"pill", "slice", "block", "egg", "sheet"}}),
       row("diameter_um", &E::diameter_um, positive, "Outer diameter (µm).",
@@ -161,7 +164,7 @@ ScenarioTable embryo_table() {
           "a dome, `[0.005, -0.005]` a saddle.",
           {.shapes = {"sheet"}}),
       row("rim", &E::rim, one_of(words::rims), "Sheet boundary: outer lateral faces free or fixed.",
-          {.shapes = {"sheet", "surface"}}),
+          {.shapes = {"sheet", "surface", "prisms"}}),
       row("periodic", &E::periodic, one_of(words::periods),
           "Periodic directions, with fixed length and no curvature: cells at opposite ends are neighbours.",
           {.may_be_empty = true, .shapes = {"sheet"}}),
@@ -195,8 +198,8 @@ ScenarioTable embryo_table() {
       row("mend", &E::mend, anything,
           "Mesh repair: merges duplicate vertices, reorients faces, drops vertices along lateral faces, lengthens "
           "edges below `least_edge_ratio`, sharpens angles over 165°. `plica check` reports the counts. `false`: short "
-          "edges stay, other defects are refused.",
-          {.shapes = {"surface"}}),
+          "edges stay, other defects are refused. Prisms: lengthens and sharpens only.",
+          {.shapes = {"surface", "prisms"}}),
       row("cell_height_array", &E::cell_height_array, anything,
           "Array of the file with cell heights (µm); replaces `cell_height_um`.", {.shapes = {"surface"}}),
       row("mirror", &E::mirror, one_of(words::mirror_planes),
@@ -205,7 +208,9 @@ ScenarioTable embryo_table() {
           {.may_be_empty = true}),
       row("file", &E::file, anything,
           "Path relative to the scenario file. Shape `file`: hexahedral mesh. `points`: CSV table with columns `x_um`, "
-          "`y_um`, `z_um`; others become cell arrays. `surface`: polygons in OBJ, OFF, PLY, VTP, VTK or tyssue HDF5.",
+          "`y_um`, `z_um`; others become cell arrays. `surface`: polygons in OBJ, OFF, PLY, VTP, VTK or tyssue HDF5. "
+          "`prisms`: polygons with face arrays `cell` (number) and `is_apical` (1 or 0), the k-th corner of each basal "
+          "polygon below that of the apical one.",
           {.is_path = true, .shapes = of_file}),
       row("cell_arrays", &E::cell_arrays, anything,
           "CSV table with a row per cell, in the order of `cell_id`: its columns become cell arrays.",
@@ -215,7 +220,8 @@ ScenarioTable embryo_table() {
           {.shapes = {"file"}}),
       row("axes", &E::axes, anything,
           "Names of x, y and z in reports and pictures: `low-high`, or one word. Default: `[\"x\", \"y\", \"z\"]` for "
-          "a block, sheet, points or surface, else `[\"anterior-posterior\", \"left-right\", \"ventral-dorsal\"]`. "
+          "a block, sheet, points, surface or prisms, else `[\"anterior-posterior\", \"left-right\", "
+          "\"ventral-dorsal\"]`. "
           "`ventral-dorsal` as z: reports describe a furrow."),
   };
   info.rules = [](Scenario& scenario, Input& input) {

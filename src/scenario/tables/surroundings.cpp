@@ -19,8 +19,9 @@ void check_shell_drag(const Scenario& scenario, Input& input) {
 
 void check_vitelline(Scenario& scenario, Input& input) {
   const EmbryoShape shape = shape_of(scenario.embryo);
-  if ((!is_patch(shape) && shape != EmbryoShape::surface) || !input.sound("vitelline.enabled")) return;
-  // The file determines whether a surface is closed.
+  const bool may_be_open = is_patch(shape) || shape == EmbryoShape::surface || shape == EmbryoShape::prisms;
+  if (!may_be_open || !input.sound("vitelline.enabled")) return;
+  // The file determines whether its cells are a closed layer.
   if (input.place("vitelline.enabled") == nullptr) scenario.vitelline.enabled = false;
   if (scenario.vitelline.enabled && is_patch(shape))
     input.report("vitelline.enabled",

@@ -96,6 +96,8 @@ Tissue build_on(const StarSurface& surface, const Vectors& points, const Polygon
 
 constexpr double largest_roughness = 0.02;  // of the least half-axis, that a vertex may be from a smooth surface
 
+}  // namespace
+
 StarSurface smooth_surface(const PolygonSurface& surface) {
   const StarFit fit = fit_star_surface(surface.vertices);
   const double allowed = largest_roughness * fit.surface.half_axes().minCoeff();
@@ -107,12 +109,13 @@ StarSurface smooth_surface(const PolygonSurface& surface) {
   return fit.surface;
 }
 
-// No vertex lies beyond it.
 OuterShape shape_around(const StarSurface& smooth, const Vectors& vertices) {
   double outside = 0;
   for (const Vec3& vertex : vertices) outside = std::max(outside, smooth.closest(vertex).signed_distance_um);
   return OuterShape(std::make_shared<const StarSurface>(smooth)).moved_out(outside);
 }
+
+namespace {
 
 Vec3 area_centroid(const PolygonSurface& surface) {
   Vec3 sum = Vec3::Zero();

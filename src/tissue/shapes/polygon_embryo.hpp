@@ -61,6 +61,12 @@ struct GivenSurface {
   bool keep_largest = false;            // likewise
 };
 
+/// Return the smooth surface through the vertices. MeshError if it is not closed around the origin and close to them.
+StarSurface smooth_surface(const PolygonSurface& surface);
+
+/// Return a smooth surface, moved out so that no vertex lies beyond it, as the reference apical surface.
+OuterShape shape_around(const StarSurface& smooth, const Vectors& vertices);
+
 /// Tissue with the given apical surface, and the reason if it has no `outer_shape`, the smooth surface through the
 /// vertices, which must be closed around the origin and close to them.
 struct SurfaceTissue {

@@ -1,0 +1,65 @@
+"""Commands of the Python package: ``python -m plica labels FILE --out cells.vtp``. Others are those of the program ``plica``."""
+from __future__ import annotations
+
+import argparse
+import sys
+import warnings
+from pathlib import Path
+from typing import Optional, Sequence
+
+from .errors import PlicaError
+from .volumes import tissue_of_labels
+
+DONE, USAGE, FILES = 0, 2, 4  # exit statuses, as those of the program
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m plica", description="Commands of plica's Python package.")
+    commands = parser.add_subparsers(dest="command", required=True)
+    labels = commands.add_parser(
+        "labels", help="cells as prisms, from a volume of labels",
+        description="Make cells of a volume of labels, for embryo.shape = \"prisms\".",
+        epilog="example: python -m plica labels cyst.tif --spacing-um 1 0.3 0.3 --apical inside --out cells.vtp --picture cells.png")
+    labels.add_argument("file", help="TIFF, OME-TIFF, NumPy or Zarr: planes, rows, columns")
+    labels.add_argument("--out", required=True, help="file to write, .vtp or .ply")
+    labels.add_argument("--spacing-um", nargs=3, type=float, metavar=("PLANES", "ROWS", "COLUMNS"),
+                        help="distances in um; default: those of the file")
+    labels.add_argument("--apical", help="outside, inside, or a direction: +z, -z, +y, -y, +x, -x")
+    labels.add_argument("--background", type=int, default=0, help="label outside all cells (default: 0)")
+    labels.add_argument("--gap-px", type=float, default=1, help="half the width of gaps that are closed, in voxels (default: 1)")
+    labels.add_argument("--keep-cut", action="store_true", help="keep cells cut by the border of the image")
+    labels.add_argument("--keep", choices=("all", "largest"), default="all", help="pieces of tissue that become cells")
+    labels.add_argument("--picture", help="picture to write: slices of the labels with the cells in outline")
+    labels.add_argument("--overwrite", action="store_true", help="write over existing files")
+    return parser
+
+
+def main(words: Optional[Sequence[str]] = None) -> int:
+    """Run a command and return its exit status."""
+    given = _parser().parse_args(words)
+    for path in (given.out, given.picture):
+        if path is not None and Path(path).exists() and not given.overwrite:
+            print(f"plica: {path}: exists; set --overwrite, or another name", file=sys.stderr)
+            return FILES
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # printed as remarks
+            tissue = tissue_of_labels(given.file, given.spacing_um, apical=given.apical, background=given.background, gap_px=given.gap_px,
+                                      keep_cut=given.keep_cut, keep=given.keep)
+        tissue.write(given.out)
+        if given.picture:
+            tissue.figure(given.file).savefig(given.picture, dpi=150)
+    except PlicaError as error:
+        print(f"plica: {error}", file=sys.stderr)
+        return FILES
+    except ValueError as error:
+        print(f"plica: {given.file}: {error}", file=sys.stderr)
+        return USAGE
+    for remark in tissue.remarks:
+        print(f"note: {remark}")
+    print(f"{given.out}: {len(tissue.cells)} cells\n{tissue.quality!r}")
+    return DONE
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,203 @@
+"""Cells as prisms of volumes of labels. damaged_volumes.py makes many more damages."""
+import functools
+import re
+import subprocess
+import sys
+import warnings
+
+import damaged_volumes
+import numpy as np
+import plica
+import pytest
+from drawn_tissues import Cyst, Tube, disagreement, pairs_of
+
+pytest.importorskip("scipy")
+HALF = (0.5, 0.5, 0.5)
+
+
+@functools.cache
+def drawn(kind, spacing=HALF):
+    tissue = {"cyst": lambda: Cyst(80, axes=(14, 14, 14), height=6, seed=2),
+              "egg": lambda: Cyst(120, axes=(24, 12, 12), height=6, seed=2),
+              "tube": lambda: Tube(80, radius=12, length=30, height=6, seed=2),
+              "sheet": lambda: Tube(80, radius=30, length=34, height=8, sector=1.2, seed=2)}[kind]()
+    labels, origin = tissue.labels(spacing)
+    return labels, origin, tissue
+
+
+def made(labels, spacing=HALF, apical="outside", **how):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return plica.tissue_of_labels(labels, spacing, apical=apical, **how)
+
+
+def test_figures_of_drawn_tissues():
+    """Neighbours, corners, volumes and elements of each kind, against the drawing."""
+    shares, off, volumes, jacobians = [], [], [], []
+    for kind, apical in (("cyst", "inside"), ("egg", "outside"), ("tube", "inside"), ("sheet", "outside")):
+        labels, origin, drawing = drawn(kind)
+        tissue = made(labels, apical=apical)
+        assert len(tissue.cells) == len(drawing.seeds), kind
+        right, far = disagreement(tissue, drawing, origin, apical)
+        shares.append(right)
+        off += far.tolist()
+        volumes += abs(tissue.quality.volume_error).tolist()
+        jacobians.append(tissue.quality.scaled_jacobian.min())
+    assert np.mean(shares) > 0.98, shares
+    assert np.median(off) / 0.5 < 1 and np.median(volumes) < 0.03
+    assert min(jacobians) > 0.15, jacobians
+
+
+def test_apical_side():
+    labels, origin, drawing = drawn("cyst")
+    inside, outside = made(labels, apical="inside"), made(labels)
+    assert np.allclose(inside.apical, outside.basal) and np.allclose(inside.basal, outside.apical)
+    far = np.linalg.norm(outside.apical + origin, axis=1)
+    assert np.median(far) == pytest.approx(17, abs=0.5)
+    axis = np.argwhere(np.ones(labels.shape)).reshape(*labels.shape, 3) * 0.5 + origin[::-1]
+    assert np.allclose(made(labels, apical=np.linalg.norm(axis, axis=3)).apical, outside.apical)
+    with pytest.raises(ValueError, match="apical is not known; the layer is bent around an inside: give apical = \"outside\" or"):
+        plica.tissue_of_labels(labels, HALF)
+    with pytest.raises(ValueError, match="no side of the layer faces there"):
+        plica.tissue_of_labels(labels, HALF, apical="+z")
+    sheet = drawn("sheet")[0]
+    up = made(sheet, apical="+z")
+    assert np.median(up.apical[:, 2] - up.basal[:, 2]) > 5
+    assert np.allclose(made(sheet, apical="-z").apical, up.basal)
+
+
+def test_cells_have_their_numbers():
+    labels, _, _ = drawn("tube")
+    tissue = made(np.where(labels > 0, labels * 1000 + 7, 0).astype(np.int64), apical="outside")
+    assert set(tissue.cell_data["label"]) <= {1000 * label + 7 for label in range(1, 81)}
+    assert np.median(tissue.cell_data["height_um"]) == pytest.approx(6, rel=0.05)
+    assert np.median(tissue.cell_data["taper"]) == pytest.approx(15 / 9, rel=0.1)
+    volume = (labels == tissue.cell_data["label"][0] // 1000).sum() / 8
+    assert tissue.cell_data["label_volume_um3"][0] == pytest.approx(volume, rel=0.02)  # but for stray voxels
+
+
+@pytest.mark.parametrize(("damage", "kind", "spacing", "said"), [
+    ("noise", "cyst", HALF, "small pieces given to their surroundings"),
+    ("holes", "egg", HALF, "holes? given to their surroundings"),
+    ("gaps", "tube", HALF, "gaps between cells were closed"),
+    ("merged", "cyst", HALF, "two cells may have one label"),
+    ("split", "sheet", HALF, None),
+    ("missing", "cyst", HALF, "an opening of . edges in the layer, at plane"),
+    ("cut", "sheet", HALF, "cut by the border of the image and were omitted"),
+    ("lower", "cyst", HALF, None),
+    ("rough_walls", "cyst", damaged_volumes.FLAT, None),
+])
+def test_damage_is_repaired_and_reported(damage, kind, spacing, said):
+    labels, _, drawing = drawn(kind, spacing)
+    volume = damaged_volumes.DAMAGES[damage](labels, np.random.default_rng(4))
+    tissue = made(volume, spacing)
+    assert len(tissue.cells) > 0.5 * len(drawing.seeds)
+    assert len(pairs_of(tissue) & drawing.neighbours()) > 0.9 * len(pairs_of(tissue)), damage
+    assert tissue.quality.scaled_jacobian.min() > 0.1
+    if said:
+        assert any(re.search(said, remark) for remark in tissue.remarks), tissue.remarks
+
+
+def test_scutoids_are_counted():
+    labels, _ = Tube(60, radius=30, length=30, height=10, sector=1.0, seed=5, exchange=1.5).labels(HALF)
+    tissue = made(labels)
+    assert any("touch on one side only (scutoids)" in remark for remark in tissue.remarks), tissue.remarks
+    assert len(tissue.cells) >= 58
+
+
+@pytest.mark.parametrize(("volume", "spacing", "said"), [
+    (np.zeros((4, 5, 6), int), HALF, "no cells; every voxel has label 0"),
+    (np.zeros((4, 5), int), HALF, "one plane; plica.polygons_of_labels reads flat"),
+    (np.zeros((2, 2, 4, 5, 6), int), HALF, "one channel and one time"),
+    (np.full((4, 5, 6), 0.5), HALF, "values that are no whole numbers"),
+    (np.random.default_rng(1).integers(0, 60_000, (30, 30, 30)), HALF, "as intensities have"),
+    (np.ones((9, 9, 9), int), HALF, "no cell reaches from one free side to the other"),
+    (np.ones((9, 9, 9), bool), HALF, "two values"),
+    (np.ones((9, 9, 9), int), (1, 0, 1), "spacing_um: 0; give three numbers above 0"),
+    (np.ones((9, 9, 9), int), None, "spacing_um: None; give three numbers"),
+])
+def test_bad_volumes(volume, spacing, said):
+    with pytest.raises(ValueError, match=said):
+        plica.tissue_of_labels(volume, spacing, apical="outside")
+
+
+def test_prisms_make_scenarios_and_files(tmp_path):
+    tissue = made(drawn("sheet")[0])
+    scenario = plica.Scenario({"format": 1, "time": {"end_s": 1}}, tissue=tissue)
+    assert scenario["embryo.shape"] == "prisms"
+    simulation = plica.Simulation(scenario)
+    assert np.allclose(simulation.cell_data["label"], tissue.cell_data["label"])
+    tissue.write(tmp_path / "cells.ply")
+    read = plica.Simulation(plica.Scenario({"format": 1, "embryo": {"shape": "prisms", "file": str(tmp_path / "cells.ply")}}))
+    assert np.allclose(read.points, simulation.points, atol=1e-9)
+    with pytest.raises(ValueError, match="has no arrays"):
+        tissue.write(tmp_path / "cells.obj")
+
+
+def test_prisms_from_arrays():
+    square = np.array([[0, 0], [10, 0], [20, 0], [0, 10], [10, 10], [20, 10]], dtype=float)
+    basal = np.column_stack([square, np.zeros(6)])
+    apical = np.column_stack([square * 1.2 + [3, 0], np.full(6, 30.0)])
+    tissue = plica.Tissue.from_prisms(apical, basal, [[0, 1, 4, 3], [1, 2, 5, 4]], cell_data={"gene": [1, 2]}, regions={"left": [True, False]})
+    assert tissue.volumes == pytest.approx([30 * 100 * (1 + 1.2 + 1.44) / 3] * 2)
+    simulation = plica.Simulation(plica.Scenario({"format": 1, "region": {"left": {"array": "left"}}}, tissue=tissue))
+    assert simulation.cell_data["gene"].tolist() == [1, 2]
+    for changed, said in (({"basal": basal[:5]}, "basal: shape"), ({"cells": [[0, 1, 9]]}, "faces: polygon 0 has vertices")):
+        with pytest.raises(ValueError, match=said):
+            plica.Tissue.from_prisms(**{"apical": apical, "basal": basal, "cells": [[0, 1, 4, 3]], **changed})
+    with pytest.raises(plica.ScenarioError, match="order corners counter-clockwise seen from the apical side"):
+        plica.Simulation(plica.Scenario({"format": 1}, tissue=plica.Tissue.from_prisms(apical, basal, [[0, 3, 4, 1]])))
+
+
+def test_files(tmp_path):
+    labels, _, _ = drawn("tube")
+    np.save(tmp_path / "a.npy", labels)
+    np.savez(tmp_path / "a.npz", labels)
+    files = [("a.npy", None), ("a.npz", None)]
+    if tifffile := pytest.importorskip("tifffile"):
+        tifffile.imwrite(tmp_path / "a.tif", labels)
+        tifffile.imwrite(tmp_path / "ij.tif", labels, imagej=True, resolution=(4, 4), metadata={"spacing": 0.5, "unit": "um", "axes": "ZYX"})
+        tifffile.imwrite(tmp_path / "b.ome.tif", labels, metadata={"axes": "ZYX", "PhysicalSizeX": 250, "PhysicalSizeXUnit": "nm",
+                                                                 "PhysicalSizeY": 0.25, "PhysicalSizeZ": 0.5})
+        files += [("a.tif", None), ("ij.tif", (0.5, 0.25, 0.25)), ("b.ome.tif", (0.5, 0.25, 0.25))]
+    from plica.label_files import read_labels
+
+    for name, spacing in files:
+        found, of_file = read_labels(tmp_path / name)
+        assert np.array_equal(found, labels), name
+        assert of_file == pytest.approx(spacing) if spacing else of_file is None, name
+    with pytest.raises(plica.FileError, match="there is no such file"):
+        read_labels(tmp_path / "b.tif")
+    with pytest.raises(plica.FileError, match="is no volume of labels; give .tif"):
+        read_labels(tmp_path / "b.czi")
+    (tmp_path / "c.tif").write_text("nothing")
+    with pytest.raises(plica.FileError, match="c.tif: cannot be read"):
+        read_labels(tmp_path / "c.tif")
+
+
+def test_zarr(tmp_path):
+    zarr = pytest.importorskip("zarr")
+    from plica.label_files import read_labels
+
+    labels, _, _ = drawn("tube")
+    zarr.save(str(tmp_path / "a.zarr"), labels)
+    assert np.array_equal(read_labels(tmp_path / "a.zarr")[0], labels)
+    group = zarr.open_group(str(tmp_path / "b.zarr"), mode="w")
+    group["0"] = labels
+    axes = [{"name": name, "type": "space", "unit": "micrometer"} for name in "zyx"]
+    group.attrs["multiscales"] = [{"axes": axes, "datasets": [{"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [0.5, 0.2, 0.2]}]}]}]
+    found, spacing = read_labels(tmp_path / "b.zarr")
+    assert np.array_equal(found, labels) and spacing == pytest.approx((0.5, 0.2, 0.2))
+
+
+def test_command(tmp_path):
+    np.save(tmp_path / "labels.npy", drawn("tube")[0])
+    words = [sys.executable, "-m", "plica", "labels", str(tmp_path / "labels.npy"), "--spacing-um", "0.5", "0.5", "0.5", "--out",
+             str(tmp_path / "cells.vtp")]
+    asked = subprocess.run(words, capture_output=True, text=True)
+    assert asked.returncode == 2 and "which side of the layer is apical is not known" in asked.stderr
+    done = subprocess.run([*words, "--apical", "inside"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "cells.vtp: 80 cells\nneighbours right: " in done.stdout
+    again = subprocess.run([*words, "--apical", "inside"], capture_output=True, text=True)
+    assert again.returncode == 4 and "exists; set --overwrite" in again.stderr
