@@ -98,7 +98,8 @@ PACKAGES = {"pandas": ("pandas", "plot"), "matplotlib": ("matplotlib", "plot"), 
             "meshio": ("meshio", "plot"), "IPython": ("ipython", "notebook"), "xarray": ("xarray", "study"),
             "SALib": ("SALib", "study"), "sklearn": ("scikit-learn", "study"), "threadpoolctl": ("threadpoolctl", "study"),
             "skimage": ("scikit-image", "image"), "scipy": ("scipy", "image"), "imageio": ("imageio", "movie"),
-            "imageio_ffmpeg": ("imageio-ffmpeg", "movie"), "tables": ("tables", "tyssue")}
+            "imageio_ffmpeg": ("imageio-ffmpeg", "movie"), "tables": ("tables", "tyssue"),
+            "starlette": ("starlette", "studio"), "uvicorn": ("uvicorn", "studio"), "websockets": ("websockets", "studio")}
 
 
 def needed(module: str, what: str) -> Any:

@@ -1,0 +1,2 @@
+// Pictures of the built-in scenarios, by name.
+export const pictures: Record<string, string> = {};
