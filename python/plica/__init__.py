@@ -25,6 +25,7 @@ from .results import Frame, Frames, Run
 from .results import open_run as open
 from .scenario import Scenario, builtin_scenarios
 from .simulation import Simulation, Step, load
+from .studio import studio
 from .study import Study
 from .studies import Calibration, Comparison, Trial, calibrate, compare
 from .tissue import Tissue
@@ -65,5 +66,6 @@ __all__ = [
     "posterior",
     "render",
     "reproduce",
+    "studio",
     "verdict",
 ]

@@ -1,9 +1,4 @@
-"""A page on which a tissue is painted, folded, cut and compared while it is simulated.
-
->>> import plica.studio
->>> callable(plica.studio.Studio)
-True
-"""
+"""A page on which a tissue is painted, folded, cut and compared while it is simulated."""
 from __future__ import annotations
 
 import fcntl
@@ -118,6 +113,13 @@ def studio(scenario: Union[Scenario, str, os.PathLike[str], None] = None, *, fol
         Without Starlette, uvicorn and websockets (``pip install 'plica[studio]'``).
     PlicaError
         If the folder has an open studio.
+
+    Examples
+    --------
+    >>> import plica
+    >>> studio = plica.studio("furrow-slice")  # doctest: +SKIP
+    >>> studio.url  # doctest: +SKIP
+    'http://127.0.0.1:43125/?token=…'
     """
     made_one = made(scenario, folder, port, threads)
     made_one.start()

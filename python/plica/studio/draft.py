@@ -49,7 +49,7 @@ def typed(value: Any, kind: str) -> Any:
             return tomllib.loads(f"value = {candidate}")["value"]
         except tomllib.TOMLDecodeError:
             continue
-    return [part.strip() for part in text.split(",")] if is_list and "text" in kind + "word" else text
+    return [part.strip() for part in text.split(",")] if kind in ("list of words", "list of texts") else text
 
 
 def changed(table: Table, changes: Changes) -> Table:

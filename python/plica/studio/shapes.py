@@ -19,48 +19,40 @@ Floats = NDArray[np.float32]
 
 def surface(hexahedra: NDArray[np.int32], cell_of: NDArray[np.int32]) -> dict[str, NDArray[np.uint32]]:
     """Return the facets that bound a tissue, 4 nodes each, their elements, and the edges that part cells, 2 nodes each."""
+    nodes = int(hexahedra.max()) + 1
     faces = hexahedra[:, FACES].reshape(-1, 4)
-    _, place, count = np.unique(np.sort(faces, axis=1), axis=0, return_inverse=True, return_counts=True)
-    at = np.flatnonzero(count[place.reshape(-1)] == 1)
+    # Three nodes tell a face; as one number they sort ten times as fast.
+    a, b, c = np.sort(faces, axis=1)[:, :3].T.astype(np.int64)
+    _, place, count = np.unique((a * nodes + b) * nodes + c, return_inverse=True, return_counts=True)
+    at = np.flatnonzero(count[place] == 1)
     facets, elements = faces[at], at // 6
-    edges = np.sort(np.stack([facets, np.roll(facets, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    edges = np.sort(np.stack([facets, np.roll(facets, -1, axis=1)], axis=2).reshape(-1, 2), axis=1).astype(np.int64)
     owner = np.repeat(cell_of[elements] * 6 + at % 6, 4)
-    each, place = np.unique(edges, axis=0, return_inverse=True)
-    place = place.reshape(-1)
+    each, place = np.unique(edges[:, 0] * nodes + edges[:, 1], return_inverse=True)
     least, most = np.full(len(each), np.iinfo(np.int64).max), np.full(len(each), -1)
     np.minimum.at(least, place, owner)
     np.maximum.at(most, place, owner)
     inside = (np.bincount(place) == 2) & (least == most)
-    return {"facets": facets.astype("u4"), "element_of_facet": elements.astype("u4"), "outlines": each[~inside].astype("u4")}
-
-
-def region_numbers(regions: dict[str, NDArray[np.bool_]], cells: int) -> tuple[list[str], Floats]:
-    """Return the regions that are not the whole tissue, and the smallest of them by cell, from 1; 0: none."""
-    some = {name: mask for name, mask in regions.items() if 0 < mask.sum() < cells}
-    numbers = np.zeros(cells, dtype="f4")
-    for number, (_, mask) in sorted(enumerate(some.items(), 1), key=lambda one: -int(one[1][1].sum())):
-        numbers[mask] = number
-    return list(some), numbers
+    return {"facets": facets.astype("u4"), "element_of_facet": elements.astype("u4"), "outlines": np.column_stack(np.divmod(each[~inside], nodes)).astype("u4")}
 
 
 def shape_message(sim: Simulation, name: str) -> bytes:
     """Pack everything about a tissue that stays while its cells do not divide."""
     rest, data = sim.rest_positions, sim.cell_data
     regions = sim.regions
-    coloured, numbers = region_numbers(regions, len(sim.pressures))
     known = {field["array"] for field in _core.colour_fields().values()}
     own = {k: v for k, v in data.items() if k not in known and k not in _core_columns() and np.isfinite(v).all()}
     shell = sim._scenario._core.shell(rest)
     arrays: dict[str, Any] = {
         "elements": sim.hexahedra.astype("u4"), "cell_of_element": sim.hexahedron_cell.astype("u4"),
         **surface(sim.hexahedra, sim.hexahedron_cell), "cell_id": data["cell_id"].astype("u4"), "rest": rest.astype("f4"),
-        "field/region": numbers, **{f"field/{k}": v.astype("f4") for k, v in own.items()},
+        **{f"field/{k}": v.astype("f4") for k, v in own.items()},
         **{f"region/{k}": mask.astype("u4") for k, mask in regions.items()},
     }
     reach = np.abs(rest).max(axis=0) * 0.15
     return packed({
         "kind": "shape", "shape": name, "nodes": len(rest), "cells": len(sim.pressures), "regions": list(regions),
-        "coloured_regions": coloured, "own_fields": {k: _core.colour_range("volume", float(v.min()), float(v.max())) for k, v in own.items()},
+        "own_fields": {k: _core.colour_range("volume", float(v.min()), float(v.max())) for k, v in own.items()},
         "box": {"low": (rest.min(axis=0) - reach).tolist(), "high": (rest.max(axis=0) + reach).tolist()},
         "shell": shell and {"half_axis_um": shell[0], "radius_um": shell[1]},
         "views": _core.views(np.ascontiguousarray(rest), sim.hexahedra),

@@ -17,6 +17,9 @@ export class LiveTopology extends Topology {
   now: Float32Array; // positions
   shown: Numbers | null = null; // values of the field of the last frame
   other: LiveTopology | null = null; // the run beside it, for differences
+  colouredRegions: string[] = []; // those with some but not all cells
+  private readonly members = new Map<string, Set<number>>(); // of each region
+  private regionNumbers = new Float32Array(0); // smallest coloured region of each cell, from 1; 0: none
 
   constructor(readonly shape: Shape, private readonly given: Map<string, Numbers>) {
     super({ ...emptyData(""), topologies: [{ times_s: [0], nodes: shape.nodes, elements: 0, cells: shape.cells }] }, 0, []);
@@ -32,12 +35,34 @@ export class LiveTopology extends Topology {
     this.now = this.rest;
     this.elementsOfCell = Array.from({ length: this.cells }, () => []);
     this.cellOfElement.forEach((cell, element) => this.elementsOfCell[cell].push(element));
+    for (const name of shape.regions) {
+      const members = new Set<number>();
+      given.get(`region/${name}`)!.forEach((is, cell) => is && members.add(cell));
+      this.members.set(name, members);
+    }
+    this.colourRegions();
   }
 
-  membersOf(region: string): number[] {
-    const members: number[] = [];
-    this.given.get(`region/${region}`)?.forEach((is, cell) => is && members.push(cell));
-    return members;
+  membersOf(region: string): ReadonlySet<number> {
+    return this.members.get(region) ?? new Set();
+  }
+
+  get regionNames(): string[] {
+    return [...this.members.keys()];
+  }
+
+  /** Show a painted region at once, before the server has built the tissue with it. */
+  setRegion(name: string, members: ReadonlySet<number>): void {
+    this.members.set(name, new Set(members));
+    this.colourRegions();
+  }
+
+  private colourRegions(): void {
+    const some = [...this.members].filter(([, { size }]) => size > 0 && size < this.cells);
+    this.colouredRegions = some.map(([name]) => name);
+    this.regionNumbers = new Float32Array(this.cells);
+    const bySize = some.map(([, members], i) => ({ members, number: i + 1 })).sort((a, b) => b.members.size - a.members.size);
+    for (const { members, number } of bySize) for (const cell of members) this.regionNumbers[cell] = number;
   }
 
   override motherOf(): number | null {
@@ -45,7 +70,7 @@ export class LiveTopology extends Topology {
   }
 
   override regionsOf(cell: number): string[] {
-    return this.shape.regions.filter((name) => this.given.get(`region/${name}`)![cell]);
+    return this.regionNames.filter((name) => this.membersOf(name).has(cell));
   }
 
   override positions(_moment: number, _part: number, out: Float32Array): void {
@@ -60,6 +85,7 @@ export class LiveTopology extends Topology {
 
   private valuesOf(field: Field): Numbers | null {
     if (field.name === "difference") return this.difference();
+    if (field.name === "region") return this.regionNumbers;
     const own = this.given.get(`field/${field.name}`);
     const values = own ?? this.shown;
     return values && values.length === (field.on_nodes ? this.nodes : this.cells) ? values : null;
@@ -120,9 +146,9 @@ export class LiveRun extends Run {
       this.shown = topology;
       this.data.shell = topology.shape.shell;
       this.data.box = topology.shape.box;
-      this.data.regions = topology.shape.regions;
-      this.data.coloured_regions = topology.shape.coloured_regions;
     }
+    this.data.regions = topology.regionNames;
+    this.data.coloured_regions = topology.colouredRegions;
     if (head.first_row === 0 || head.columns.length !== this.series.columns.length) {
       this.series = new Table("");
       this.series.columns.push(...head.columns);

@@ -192,7 +192,7 @@ class Studio {
 
   private takeTopology(before: LiveTopology | null, topology: LiveTopology): void {
     const { shape } = topology;
-    this.tools?.showRegions(shape.regions);
+    this.tools?.showRegions(topology.regionNames);
     const own = Object.entries(shape.own_fields).map(([name, range]): Field => (
       { name, label: name, unit: "", on_nodes: false, scale: "from-zero", map: "from_zero", ...rangeOf(range) }));
     this.page.fields = [...this.known, ...own, difference];
@@ -204,7 +204,6 @@ class Studio {
     this.state.set({ view: this.page.views[0], cut: null, edges: topology.cells <= mostCellsWithEdges });
     this.views?.remeasure();
     byId("controls").replaceChildren(...new LookControls([this.runs[0]], this.page, this.state, () => this.views?.sight() ?? [1, 1, 1]).all());
-    this.tools?.showRegions(shape.regions);
   }
 
   private makeViews(): void {
@@ -212,13 +211,12 @@ class Studio {
     const paintings = this.runs.map((run) => new Painting(this.views!.viewOf(run), (stroke) => this.takeStroke(stroke)));
     this.tools = new ToolsBar(byId("tools"), byId("acts-holder"), paintings, {
       clear: () => this.select(new Set()),
-      load: () => undefined,
       paintInto: (region) => this.select(new Set(region === "" ? [] : this.runs[0].shown!.membersOf(region))),
       makeRegion: (name) => void this.paint(name),
       act: (kind, strength) => void this.act(kind, strength),
       end: (name) => void this.act("end", 0, name),
     });
-    this.tools.showRegions(this.runs[0].shown!.shape.regions);
+    this.tools.showRegions(this.runs[0].shown!.regionNames);
     void this.views.makeReady();
     this.views.remeasure();
     this.views.draw();
@@ -345,11 +343,15 @@ class Studio {
     if (this.chosen.run !== 0) return this.tell("Regions belong to the tissue at rest; choose At rest under Runs, or act on the selected cells.");
     const begun = performance.now();
     const done = await this.order("paint", { region, ids: [...this.selection] });
-    if (done) document.body.dataset.strokeMs = String(Math.round(performance.now() - begun));
-    if (done && this.tools.target.value !== region) {
-      this.tools.showRegions([...(this.runs[0].shown?.shape.regions ?? []), region]);
-      this.tools.target.value = region;
-    }
+    if (!done) return;
+    const run = this.runs[0];
+    run.shown!.setRegion(region, this.selection);
+    run.data.coloured_regions = run.shown!.colouredRegions;
+    this.views!.refresh();
+    document.body.dataset.strokeMs = String(Math.round(performance.now() - begun));
+    if (this.tools.target.value === region) return;
+    this.tools.showRegions(run.shown!.regionNames);
+    this.tools.target.value = region;
   }
 
   // The rest of the page

@@ -9,7 +9,6 @@ export interface Shape {
   nodes: number;
   cells: number;
   regions: string[];
-  coloured_regions: string[];
   own_fields: Record<string, [number, number]>;
   box: { low: Vec3; high: Vec3 };
   shell: RunData["shell"];

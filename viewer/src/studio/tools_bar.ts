@@ -5,7 +5,6 @@ import type { Painting, Tool } from "./painting";
 
 export interface ToolActions {
   clear(): void;
-  load(region: string): void;
   paintInto(region: string): void; // "": the selection
   makeRegion(name: string): void;
   act(kind: string, strength: number): void;
@@ -26,7 +25,7 @@ export class ToolsBar {
   private readonly lasting = element("span", { class: "group" });
   private readonly when = element("span", { id: "act-time", class: "note" });
 
-  constructor(holder: HTMLElement, acts: HTMLElement, private readonly paintings: Painting[], private readonly actions: ToolActions) {
+  constructor(private readonly holder: HTMLElement, acts: HTMLElement, private readonly paintings: Painting[], private readonly actions: ToolActions) {
     const choice = element("div", { class: "group", role: "radiogroup", "aria-label": "Tool" });
     for (const [tool, text, key] of tools) {
       const made = button(`tool-${tool}`, text, () => this.choose(tool));
@@ -38,18 +37,21 @@ export class ToolsBar {
       actions.makeRegion(this.newName.value.trim());
       this.newName.value = "";
     });
-    holder.append(choice, element("label", {}, "size ", this.size), element("label", {}, this.erase, " erase"),
+    holder.append(choice, element("span", { class: "group painter" }, element("label", {}, "size ", this.size),
+      element("label", {}, this.erase, " erase"),
       element("label", { title: "cells at −y get the same as those at y" }, this.mirror, " mirror"),
-      element("label", {}, "paint ", this.target), this.count, button("clear-selection", "Clear", () => actions.clear()), this.newName, make, this.names);
+      element("label", {}, "paint ", this.target), this.count, button("clear-selection", "Clear", () => actions.clear()), this.newName, make), this.names);
     this.size.addEventListener("input", () => paintings.forEach((one) => (one.size = Number(this.size.value))));
     this.erase.addEventListener("change", () => paintings.forEach((one) => (one.erases = this.erase.checked)));
     this.target.addEventListener("change", () => actions.paintInto(this.target.value));
+    this.showCount(0);
     this.fillActs();
     acts.append(element("h2", {}, "Act on the selected cells "), this.when, this.acts, this.lasting);
   }
 
   choose(tool: Tool): void {
     for (const painting of this.paintings) painting.choose(tool);
+    this.holder.classList.toggle("painting", tool !== "rotate");
     for (const [name] of tools) document.getElementById(`tool-${name}`)!.setAttribute("aria-pressed", String(name === tool));
   }
 
@@ -79,6 +81,7 @@ export class ToolsBar {
   }
 
   showCount(count: number): void {
+    this.holder.classList.toggle("selected", count > 0);
     this.count.textContent = `${count} cell${count === 1 ? "" : "s"}`;
   }
 
