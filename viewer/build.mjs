@@ -20,7 +20,6 @@ async function bundle(entry) {
     format: "iife",
     target: "es2020",
     legalComments: "none",
-    loader: { ".webp": "dataurl" },
   });
   return result.outputFiles[0].text;
 }

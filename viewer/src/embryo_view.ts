@@ -80,7 +80,7 @@ export class EmbryoViews {
     return this.views.find((view) => view.run === run)!;
   }
 
-  /** Adapt to runs that have become larger or smaller, or are loaded now, and look at them anew. */
+  /** Adapt to runs that have become larger or smaller, or are loaded now, and look at them again. */
   remeasure(): void {
     this.radius = Math.max(...this.views.map(({ run }) => Math.hypot(...run.halfSize)));
     for (const view of this.views) view.resize(this.radius);

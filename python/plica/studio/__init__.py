@@ -24,7 +24,7 @@ class Studio:
     Attributes
     ----------
     url : str
-        Address of the page, with its token: whoever has it can use the studio on this machine.
+        Address of the page, with its token: anyone on this machine who has it can use the studio.
     """
 
     def __init__(self, server: Server, lock: IO[str]) -> None:

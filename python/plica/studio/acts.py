@@ -45,7 +45,8 @@ def act(kind: str, table: Table, cells: Sequence[int], at_s: float, strength: fl
         return {f"region.{name}.ids": list(cells), f"ablation.{name}": light}, f"darken {count} to {strength:g}"
     if kind == "pull":
         name = free_name("pull", table)
-        load = {"region": name, "face": "apical", "pressure_Pa": -strength, "program": {"time_s": [at_s, at_s], "activity": [0, 1]}}
+        load = {"region": name, "face": "apical", "pressure_Pa": -strength,
+            "program": {"time_s": [at_s, at_s], "activity": [0, 1]}}
         return {f"region.{name}.ids": list(cells), f"pressure.{name}": load}, f"pull {count}, {strength:g} Pa"
     raise ValueError(f"act: {kind} is unknown; use cut, darken or pull")
 
@@ -62,7 +63,8 @@ def running_acts(table: Table, at_s: float) -> list[str]:
 def end_of_act(name: str, table: Table, at_s: float) -> tuple[Changes, str]:
     """Return the changes that end light or a pull at a time, and their title."""
     if name not in running_acts(table, at_s):
-        raise ValueError(f"{name}: is no act that lasts at {at_s:g} s; choose one of {', '.join(running_acts(table, at_s)) or 'none'}")
+        lasting = ", ".join(running_acts(table, at_s)) or "none"
+        raise ValueError(f"{name}: not an act that lasts at {at_s:g} s; choose one of: {lasting}")
     kind, _, own = name.partition(".")
     if kind == "ablation":
         return {f"{name}.until_s": at_s}, f"light again: {own}"

@@ -77,17 +77,21 @@ def differences(of: Table, base: Table) -> dict[str, Any]:
 
 def toml(table: Table) -> str:
     """Write nested tables: sections down to named tables, what is deeper in one line."""
-    lines = [f"{_toml_key(key)} = {_toml_value(value, key)}" for key, value in table.items() if not isinstance(value, dict)]
+    lines = _lines({key: value for key, value in table.items() if not isinstance(value, dict)})
     for name, inner in table.items():
-        if isinstance(inner, dict):
-            own = {key: value for key, value in inner.items() if not isinstance(value, dict)}
-            if own:
-                lines += ["", f"[{_toml_key(name)}]"] + [f"{_toml_key(k)} = {_toml_value(v, k)}" for k, v in own.items()]
-            for key, value in inner.items():
-                if isinstance(value, dict):
-                    lines += ["", f"[{_toml_key(name)}.{_toml_key(key)}]"]
-                    lines += [f"{_toml_key(k)} = {_toml_value(v, k)}" for k, v in value.items()]
+        if not isinstance(inner, dict):
+            continue
+        own = {key: value for key, value in inner.items() if not isinstance(value, dict)}
+        if own:
+            lines += ["", f"[{_toml_key(name)}]", *_lines(own)]
+        for key, value in inner.items():
+            if isinstance(value, dict):
+                lines += ["", f"[{_toml_key(name)}.{_toml_key(key)}]", *_lines(value)]
     return "\n".join(lines).lstrip("\n") + "\n"
+
+
+def _lines(table: Table) -> list[str]:
+    return [f"{_toml_key(key)} = {_toml_value(value, key)}" for key, value in table.items()]
 
 
 class Draft:
@@ -141,7 +145,8 @@ class Draft:
 
     def state(self) -> Table:
         first = max(self.place - MOST_SAVED, 0)
-        return {"base": self.base, "history": self.history[first : self.place + MOST_SAVED], "place": self.place - first}
+        return {"base": self.base, "history": self.history[first : self.place + MOST_SAVED],
+            "place": self.place - first}
 
     @classmethod
     def restored(cls, state: Table) -> Draft:

@@ -15,4 +15,5 @@ def packed(head: dict[str, Any], arrays: Mapping[str, NDArray[Any]]) -> bytes:
     index = [[name, array.dtype.kind, array.size] for name, array in arrays.items()]
     text = json.dumps({**head, "arrays": index}, allow_nan=False).encode()
     text += b" " * (-len(text) % 4)
-    return b"".join([struct.pack("<I", len(text)), text, *(np.ascontiguousarray(array).tobytes() for array in arrays.values())])
+    return b"".join([struct.pack("<I", len(text)), text,
+        *(np.ascontiguousarray(array).tobytes() for array in arrays.values())])

@@ -1,13 +1,14 @@
 """A run of the studio: a recorded `plica run` in a thread of its own, whose frames and states are kept.
 
 What is shown is always the run of a scenario file. An act during a run makes another scenario, which differs from a time on;
-its run continues from a state that both share. Steps never end where the user pauses, so a run has the same bits as one from
-the command line."""
+its run continues from a state that both share. Steps never end where the user pauses, so a run is bitwise
+identical to one from the command line."""
 from __future__ import annotations
 
 import csv
 import math
 import os
+import shutil
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -42,15 +43,16 @@ class StudioRun:
         self.columns: list[str] = []
         self.rows: list[list[Optional[float]]] = []
         self.notes: list[str] = []
-        self.status, self.failure, self.failed_cell = "paused", "", None  # type: ignore[var-annotated]
-        self.from_s, self.steps = 0.0, 0
+        self.status, self.failure = "paused", ""
+        self.failed_cell: Optional[int] = None
+        self.from_s = 0.0
         self.end_s = float(scenario["time.end_s"])
         self.lasting = running_acts(scenario.to_dict(), math.inf)
         self._told, self._goal_s, self._steps_left = told, -math.inf, 0
         self._order = threading.Condition()
         self._thread: Optional[threading.Thread] = None
-        self._closing = False
-        self._shown_at, self._checkpoint = -math.inf, 0
+        self._closing, self._divisions = False, 0
+        self._shown_at, self._checkpoint = -math.inf, (0, 0)
         self._read_rows()
 
     # Orders, from any thread
@@ -68,7 +70,8 @@ class StudioRun:
     def _give(self, goal_s: float, steps: int) -> None:
         with self._order:
             self._goal_s, self._steps_left = goal_s, steps
-            if not self.is_over and not self._closing and self._thread is None and (goal_s > self.time_s or steps):
+            if not self.is_over and not self._closing and self._thread is None and (goal_s > -math.inf or steps):
+                self.status = "running"
                 self._thread = threading.Thread(target=self._work, name=f"plica studio run {self.number}", daemon=True)
                 self._thread.start()
             self._order.notify()
@@ -91,7 +94,8 @@ class StudioRun:
         return float(self.rows[-1][0] or 0.0) if self.rows else self.from_s
 
     def summary(self) -> dict[str, Any]:
-        return {"number": self.number, "title": self.title, "status": self.status, "time_s": self.time_s, "end_s": self.end_s,
+        return {"number": self.number, "title": self.title, "status": self.status, "time_s": self.time_s,
+            "end_s": self.end_s,
                 "steps": len(self.rows) - 1 if self.rows else 0, "failure": self.failure, "failed_cell": self.failed_cell,
                 "parent": self.parent and self.parent.number, "act_s": self.act_s, "from_s": self.from_s,
                 "notes": self.notes, "running": self.status == "running", "lasting": self.lasting}
@@ -222,13 +226,18 @@ class StudioRun:
         """Keep the newest checkpoint by a second link to it: the recorder replaces the file, and does not change it."""
         checkpoint = self.results / "checkpoint.h5"
         try:
-            number = os.stat(checkpoint).st_ino
-            if number == self._checkpoint:
-                return
-            self._checkpoint = number
-            os.link(checkpoint, self.kept / f"{sim.steps:08d} {sim.time_s!r}.h5")
+            found = os.stat(checkpoint)
         except FileNotFoundError:
             return
+        if (found.st_ino, found.st_mtime_ns) == self._checkpoint:
+            return
+        self._checkpoint = (found.st_ino, found.st_mtime_ns)
+        state = self.kept / f"{sim.steps:08d} {sim.time_s!r}.h5"
+        state.unlink(missing_ok=True)
+        try:
+            os.link(checkpoint, state)
+        except OSError:  # a file system without links
+            shutil.copyfile(checkpoint, state)
         states = self.kept_states()
         if len(states) > MOST_KEPT:
             for _, path in states[1 : MOST_KEPT // 2 : 2]:
@@ -241,12 +250,11 @@ class StudioRun:
     # Frames
 
     def _add_shape(self, sim: Simulation) -> None:
+        """Add the shape that follows a division, or the first."""
         shape = shape_message(sim, f"{self.number}/{len(self.shapes)}")
         (self.directory / f"shape-{len(self.shapes):04d}.bin").write_bytes(shape)
         self.shapes.append(shape)
         self._divisions = sim._core.divisions
-
-    _divisions = 0
 
     def _show(self, sim: Simulation, force: bool = False) -> None:
         now = monotonic()
@@ -289,7 +297,8 @@ class StudioRun:
         shape = f"{self.number}/{frame.shape}"
         field = want["field"]
         arrays = {"positions": self.file.positions(i)}
-        head: dict[str, Any] = {"kind": "frame", "slot": want["slot"], "run": shown.number, "index": index, "count": count,
+        head: dict[str, Any] = {"kind": "frame", "slot": want["slot"], "run": shown.number, "index": index,
+            "count": count,
                                 "time_s": frame.time_s, "shape": shape, "field": field}
         if field in self.file.ends:
             arrays["values"] = self.file.values(i, field)

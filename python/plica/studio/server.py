@@ -7,7 +7,9 @@ from __future__ import annotations
 import asyncio
 import hmac
 import json
+import math
 import socket
+import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any, Optional
@@ -62,7 +64,7 @@ class Page:
         self.wake, self.wants = asyncio.Event(), dict[int, dict[str, Any]]()
         self._sending = asyncio.Lock()
         self._draft: Any = None
-        self._runs = ""
+        self._runs, self._runs_at = "", -math.inf
 
     async def send(self, message: dict[str, Any] | bytes) -> None:
         async with self._sending:
@@ -95,7 +97,8 @@ class Page:
                 return
             answer = await asyncio.to_thread(self.session.order, str(name), given)
             await self.send({"id": number, "ok": answer})
-        except (Refused, PlicaError, ValueError, TypeError, KeyError, AttributeError, OSError, RecursionError, OverflowError) as error:
+        except (Refused, PlicaError, ValueError, TypeError, KeyError, AttributeError, OSError, RecursionError,
+            OverflowError) as error:
             await self.send({"id": number, "problem": problem_of(error)})
 
     async def _push(self) -> None:
@@ -104,7 +107,11 @@ class Page:
             self.wake.clear()
             await self._send_states()
             for slot, want in list(self.wants.items()):
-                messages = await asyncio.to_thread(self.session.frame_messages, want)
+                try:
+                    messages = await asyncio.to_thread(self.session.frame_messages, want)
+                except (OSError, LookupError, TypeError, ValueError):  # a run that has just been removed, or nonsense
+                    self.wants.pop(slot, None)
+                    continue
                 if messages and self.wants.get(slot) is want:
                     del self.wants[slot]
                     for message in messages:
@@ -116,9 +123,13 @@ class Page:
         if key != self._draft:
             self._draft = key
             await self.send({"draft": session.draft_state()})
+        left_s = self._runs_at + STATES_APART_S - time.monotonic()
+        if left_s > 0:
+            asyncio.get_running_loop().call_later(left_s, self.wake.set)
+            return
         runs = json.dumps(session.runs_state())
         if runs != self._runs:
-            self._runs = runs
+            self._runs, self._runs_at = runs, time.monotonic()
             await self.send({"runs": json.loads(runs)})
 
 
@@ -140,8 +151,8 @@ class Server:
         routes = [Route("/", self._guarded(show)), Route("/take/{number:int}/{name}", self._guarded(self._take)),
                   WebSocketRoute("/ws", self._connect)]
         self.app = Starlette(routes=routes)
-        config = uvicorn.Config(self.app, log_level="error", ws="websockets-sansio", ws_max_size=MOST_MESSAGE_BYTES, ws_per_message_deflate=False,
-                                lifespan="off", timeout_graceful_shutdown=1)
+        config = uvicorn.Config(self.app, log_level="error", ws="websockets-sansio", ws_max_size=MOST_MESSAGE_BYTES,
+                                ws_per_message_deflate=False, lifespan="off", timeout_graceful_shutdown=1)
         self.server = uvicorn.Server(config)
 
     @property
@@ -173,7 +184,8 @@ class Server:
         hosts = [f"{name}:{self.port}" for name in NAMES]
         origin = request.headers.get("origin")
         has_token = hmac.compare_digest(request.query_params.get("token", "").encode(), self.token.encode())
-        is_here = request.headers.get("host", "") in hosts and (origin is None or origin in [f"http://{host}" for host in hosts])
+        is_ours = origin is None or origin in [f"http://{host}" for host in hosts]
+        is_here = request.headers.get("host", "") in hosts and is_ours
         return has_token and is_here
 
     def _guarded(self, show: Callable[[Request], Awaitable[Response]]) -> Callable[[Request], Awaitable[Response]]:
@@ -191,7 +203,8 @@ class Server:
             text = await asyncio.to_thread(texts[name], number)
         except (KeyError, Refused) as error:
             return PlainTextResponse(f"{name}: {error}\n", 404, HEADERS)
-        return Response(text, media_type="text/plain", headers={**HEADERS, "Content-Disposition": f'attachment; filename="{name}"'})
+        return Response(text, media_type="text/plain",
+            headers={**HEADERS, "Content-Disposition": f'attachment; filename="{name}"'})
 
     async def _connect(self, socket_: WebSocket) -> None:
         if not self._allowed(socket_) or socket_.headers.get("origin") is None or len(self.pages) >= MOST_CONNECTIONS:

@@ -21,12 +21,12 @@ from .acts import act, end_of_act, running_acts, time_of_act
 from .draft import Draft, Table, row_of, schema, text_of, typed
 from .messages import packed
 from .run import StudioRun
-from .shapes import shape_message, values_now
+from .shapes import Floats, shape_message, values_now
 
 FOLDER = ".plica-studio"
 TISSUES = {".vtu": ("file", "surface"), ".vtk": ("file", "surface"), ".vtp": ("surface",), ".obj": ("surface",),
            ".off": ("surface",), ".ply": ("surface",), ".hf5": ("surface",), ".csv": ("points",)}
-MOST_FILES, MOST_FILE_BYTES = 500, 500_000_000
+MOST_FILES, MOST_SEEN, MOST_FILE_BYTES, MOST_RUNS = 500, 20_000, 500_000_000, 100
 NAME = re.compile(r"[A-Za-z0-9_-]{1,60}")
 
 
@@ -38,9 +38,10 @@ class Rest:
     """The draft's tissue at rest, built in a thread of its own whenever the draft has changed."""
 
     def __init__(self, told: Callable[[], None]) -> None:
-        self.version, self.shape, self.sim = 0, b"", None  # type: Optional[int], bytes, Optional[Simulation]
+        self.version, self.cells = 0, 0
         self.advice: list[str] = []
         self.problem = ""
+        self._built: Optional[tuple[int, bytes, Floats, dict[str, Floats]]] = None  # version, shape, positions, values
         self._told, self._wanted = told, threading.Condition()
         self._next: Optional[Scenario] = None
         self._closing = False
@@ -66,28 +67,29 @@ class Rest:
                 if self._closing or self._next is None:
                     return
                 scenario, self._next = self._next, None
+            version = self.version + 1
             try:
                 sim = Simulation(scenario, threads=1)
-                shape = shape_message(sim, f"0/{self.version + 1}")
-                self.sim, self.shape, self.problem = sim, shape, ""
-                self.advice = list(sim._core.advice)
+                self._built = (version, shape_message(sim, f"0/{version}"), sim.positions.astype("f4"), values_now(sim))
+                self.advice, self.problem, self.cells = list(sim._core.advice), "", len(sim.pressures)
             except (PlicaError, ValueError, OSError, MemoryError) as error:
                 self.problem, self.advice = str(error) or "out of memory; use fewer cells", []
-            self.version += 1
+            self.version = version
             self._told()
 
     def frame_message(self, want: Table) -> list[bytes]:
-        sim = self.sim
-        if sim is None or self.version == want.get("known"):
+        """Return shape and frame unless the page knows them."""
+        if self._built is None or self._built[0] == want.get("known"):
             return []
-        values = values_now(sim)
-        head = {"kind": "frame", "slot": want["slot"], "run": 0, "index": self.version, "count": 1, "time_s": 0.0,
-                "shape": f"0/{self.version}", "field": want["field"], "columns": [], "first_row": 0, "rows": []}
-        arrays = {"positions": sim.positions.astype("f4")}
-        if want["field"] in values:
-            arrays["values"] = values[want["field"]]
-            head["range"] = _core.colour_range(want["field"], float(arrays["values"].min()), float(arrays["values"].max()))
-        return [self.shape, packed(head, arrays)]
+        version, shape, positions, values = self._built
+        name = want["field"]
+        head = {"kind": "frame", "slot": want["slot"], "run": 0, "index": version, "count": 1, "time_s": 0.0,
+                "shape": f"0/{version}", "field": name, "columns": [], "first_row": 0, "rows": []}
+        arrays = {"positions": positions}
+        if name in values:
+            arrays["values"] = values[name]
+            head["range"] = _core.colour_range(name, float(values[name].min()), float(values[name].max()))
+        return [shape, packed(head, arrays)]
 
 
 class Session:
@@ -130,7 +132,8 @@ class Session:
             for row in saved["runs"]:
                 directory = self._directory(row["number"])
                 scenario = Scenario(tomllib.loads((directory / "scenario.toml").read_text()))
-                run = StudioRun(row["number"], directory, scenario, self._run_told, base=row["base"], title=row["title"],
+                run = StudioRun(row["number"], directory, scenario, self._run_told, base=row["base"],
+                    title=row["title"],
                                 parent=self.runs.get(row["parent"]), act_s=row["act_s"], threads=self.threads)
                 run.status, run.failure, run.failed_cell = row["status"], row["failure"], row["failed_cell"]
                 self.runs[run.number] = run
@@ -202,11 +205,15 @@ class Session:
 
     def do_gallery(self) -> Table:
         """List built-in scenarios and the files of the folder that can be opened."""
-        files = []
-        for path in sorted(self.folder.rglob("*"))[: 20 * MOST_FILES]:
-            hidden = any(part.startswith(".") for part in path.relative_to(self.folder).parts)
-            if not hidden and path.suffix in (".toml", *TISSUES) and path.is_file():
-                files.append((path.stat().st_mtime, str(path.relative_to(self.folder))))
+        files, seen = [], 0
+        for folder, inner, names in os.walk(self.folder):
+            inner[:] = sorted(name for name in inner if not name.startswith("."))
+            seen += len(names)
+            for path in (Path(folder) / name for name in names):
+                if path.suffix in (".toml", *TISSUES) and path.is_file() and not path.name.startswith("."):
+                    files.append((path.stat().st_mtime, str(path.relative_to(self.folder))))
+            if seen > MOST_SEEN:
+                break
         recent = [name for _, name in sorted(files, reverse=True)[:MOST_FILES]]
         return {"scenarios": builtin_scenarios(), "files": recent, "folder": str(self.folder)}
 
@@ -217,7 +224,7 @@ class Session:
             return {}
         path = self._inside(source)
         if not path.is_file():
-            raise Refused(f"{source}: is no file; choose one of the list")
+            raise Refused(f"{source}: not a file of this folder; choose one of the list")
         if path.stat().st_size > MOST_FILE_BYTES:
             raise Refused(f"{source}: is larger than {MOST_FILE_BYTES // 10**6} MB; use plica run")
         if path.suffix == ".toml":
@@ -235,7 +242,7 @@ class Session:
                 return {}
             except (PlicaError, ValueError) as error:
                 problems.append(str(error))
-        raise Refused("\n".join(problems) or f"{source}: is no scenario or tissue; open .toml, {', '.join(TISSUES)}")
+        raise Refused("\n".join(problems) or f"{source}: not a scenario or tissue; open .toml, {', '.join(TISSUES)}")
 
     def open(self, draft: Draft) -> None:
         if self.draft is not None:
@@ -271,7 +278,7 @@ class Session:
     def do_paint(self, region: str, ids: list[int]) -> Table:
         """Make a region the given cells, whatever selected them before."""
         if not NAME.fullmatch(region) or region == "all":
-            raise Refused(f"{region[:60]}: is no name of a region; use letters, digits, _ and -")
+            raise Refused(f"{region[:60]}: not a valid name of a region; use letters, digits, _ and -")
         ids = sorted({int(cell) for cell in ids})
         self._drafted().set({f"region.{region}": {"ids": ids} if ids else None})
         self._draft_changed()
@@ -288,6 +295,8 @@ class Session:
         return {}
 
     def _new_run(self, table: Table, base: str, title: str, parent: Optional[StudioRun], act_s: float) -> StudioRun:
+        if len(self.runs) >= MOST_RUNS:
+            raise Refused(f"{MOST_RUNS} runs are kept; remove some")
         number = max(self.runs, default=0) + 1
         directory = self._directory(number)
         shutil.rmtree(directory, ignore_errors=True)
@@ -332,7 +341,8 @@ class Session:
         self.told()
         return {}
 
-    def do_act(self, run: int, at_s: float, kind: str, cells: list[int], strength: float = 0.0, name: str = "") -> Table:
+    def do_act(self, run: int, at_s: float, kind: str, cells: list[int], strength: float = 0.0,
+        name: str = "") -> Table:
         """Act on cells of a run at a time: another run, which continues the first from there on."""
         before = self._run(run)
         if before.scenario.to_dict().get("division") and before.file.frames and len(before.shapes) > 1:
@@ -359,7 +369,7 @@ class Session:
     def do_results(self, run: int, name: str) -> Table:
         """Write the results directory of a run's scenario, from rest, and compare its end with what was shown."""
         if not NAME.fullmatch(name):
-            raise Refused(f"{name[:60]}: is no name of a directory; use letters, digits, _ and -")
+            raise Refused(f"{name[:60]}: not a valid name of a directory; use letters, digits, _ and -")
         shown, out = self._run(run), self._inside(name)
         if out.exists():
             raise Refused(f"{name}: exists; give another name")

@@ -33,7 +33,8 @@ def surface(hexahedra: NDArray[np.int32], cell_of: NDArray[np.int32]) -> dict[st
     np.minimum.at(least, place, owner)
     np.maximum.at(most, place, owner)
     inside = (np.bincount(place) == 2) & (least == most)
-    return {"facets": facets.astype("u4"), "element_of_facet": elements.astype("u4"), "outlines": np.column_stack(np.divmod(each[~inside], nodes)).astype("u4")}
+    return {"facets": facets.astype("u4"), "element_of_facet": elements.astype("u4"),
+        "outlines": np.column_stack(np.divmod(each[~inside], nodes)).astype("u4")}
 
 
 def shape_message(sim: Simulation, name: str) -> bytes:
@@ -60,7 +61,8 @@ def shape_message(sim: Simulation, name: str) -> bytes:
 
 
 def _core_columns() -> set[str]:
-    return {"time_s", "cell_id", "mother_id", "x_um", "y_um", "z_um", "apical_area_um2", "basal_area_um2", "height_um", "speed_um_per_s"}
+    return {"time_s", "cell_id", "mother_id", "x_um", "y_um", "z_um", "apical_area_um2", "basal_area_um2", "height_um",
+        "speed_um_per_s"}
 
 
 def values_now(sim: Simulation) -> dict[str, Floats]:

@@ -82,7 +82,11 @@ export interface Listener {
   shape(message: Message<Shape>): void;
   frame(message: Message<Frame>): void;
   connected(on: boolean): void;
+  /** The scenario was changed by this page. */
+  edited(): void;
 }
+
+const editing = ["open", "set", "paint", "undo", "redo"];
 
 const patience = 800; // ms before another attempt
 
@@ -103,7 +107,11 @@ export class Connection {
         fail(new Problem("The server does not answer; start plica studio again.", []));
         return;
       }
-      this.waiting.set(id, { done, fail });
+      const after = (answer: Table) => {
+        done(answer);
+        if (editing.includes(name)) this.listener.edited();
+      };
+      this.waiting.set(id, { done: after, fail });
       this.socket.send(JSON.stringify({ id, do: name, with: given }));
     });
   }

@@ -12,19 +12,22 @@ function make(tag: string, attributes: Record<string, string | number>): SVGElem
 }
 
 /** Curve of `activity` over `times` (s), drawn to `end`; `tell` receives both after each change. */
-export function curveOf(times: number[], activity: number[], end: number, tell: (times: number[], activity: number[]) => void): HTMLElement {
+export function curveOf(times: number[], activity: number[], end: number, tell: (times: number[], activity: number[]) =>
+  void): HTMLElement {
   const points = times.map((time, i) => ({ time, value: activity[i] }));
   const last = Math.max(end, ...times, 1);
   const top = Math.max(1, ...activity) * 1.1;
   const x = (time: number) => pad + (time / last) * (width - 2 * pad);
   const y = (value: number) => height - pad - (value / top) * (height - 2 * pad);
-  const drawing = make("svg", { viewBox: `0 0 ${width} ${height}`, class: "curve", role: "group", "aria-label": "Activity over time" });
+  const drawing = make("svg", { viewBox: `0 0 ${width} ${height}`, class: "curve", role: "group",
+    "aria-label": "Activity over time" });
   const readout = element("output", { class: "note" }, "Drag points; double-click adds one, Delete removes it.");
   const line = make("polyline", {});
   const say = () => tell(points.map((p) => p.time), points.map((p) => p.value));
 
   const draw = () => {
-    line.setAttribute("points", [[0, points[0]?.value ?? 1], ...points.map((p) => [p.time, p.value]), [last, points.at(-1)?.value ?? 1]]
+    line.setAttribute("points", [[0, points[0]?.value ?? 1], ...points.map((p) => [p.time, p.value]), [last,
+      points.at(-1)?.value ?? 1]]
       .map(([time, value]) => `${x(time)},${y(value)}`).join(" "));
     drawing.replaceChildren(make("line", { x1: pad, x2: width - pad, y1: y(0), y2: y(0), class: "axis" }), line,
       ...points.map((_, i) => handle(i)));
@@ -32,7 +35,8 @@ export function curveOf(times: number[], activity: number[], end: number, tell: 
   const set = (i: number, time: number, value: number) => {
     const least = points[i - 1]?.time ?? 0;
     const most = points[i + 1]?.time ?? Infinity;
-    points[i] = { time: Math.round(Math.min(Math.max(time, least), most)), value: Number(Math.max(value, 0).toPrecision(3)) };
+    points[i] = { time: Math.round(Math.min(Math.max(time, least), most)),
+      value: Number(Math.max(value, 0).toPrecision(3)) };
     readout.textContent = `${number(points[i].time / 60)} min: ${number(points[i].value)}`;
   };
   const handle = (i: number): SVGElement => {

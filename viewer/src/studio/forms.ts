@@ -1,7 +1,8 @@
 // Forms of all tables of the scenario, made from the server's schema: a field a key, with unit, meaning and check.
 import { element } from "../dom";
 import { lastOf, words } from "../text";
-import { type Connection, type DraftState, type KeyRow, Problem, type SchemaTable, type Table, type Value } from "./connection";
+import { type Connection, type DraftState, type KeyRow, Problem, type SchemaTable, type Table,
+  type Value } from "./connection";
 import { curveOf } from "./curve";
 
 const checkAfter = 150; // ms without typing
@@ -39,7 +40,8 @@ export class Forms {
   private readonly opened = new Set<string>();
   private readonly pending = new Map<string, string | boolean>(); // refused so far, by key
   private readonly list = element("div", { id: "tables" });
-  private readonly filter = element("input", { type: "search", id: "find-key", placeholder: "Find a key", "aria-label": "Find a key" });
+  private readonly filter = element("input", { type: "search", id: "find-key", placeholder: "Find a key",
+    "aria-label": "Find a key" });
 
   constructor(holder: HTMLElement, private readonly connection: Connection) {
     holder.append(this.filter, this.adding(), this.list);
@@ -54,9 +56,11 @@ export class Forms {
     if (this.draft) this.show(this.draft);
   }
 
+  /** Make the forms again where the scenario has changed, so that a text is not lost as it is typed. */
   show(draft: DraftState): void {
+    const isSame = this.draft?.revision === draft.revision && this.list.childElementCount > 0;
     this.draft = draft;
-    if (this.schema.length === 0) return;
+    if (this.schema.length === 0 || isSame) return;
     const focused = (document.activeElement as HTMLElement | null)?.dataset.key;
     this.list.replaceChildren(...this.places().map((place) => this.formOf(place)));
     if (focused) this.list.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus();
@@ -103,7 +107,8 @@ export class Forms {
     const fill = () => {
       details.dataset.filled = "true";
       details.append(element("p", { class: "note" }, plain(schema.meaning)));
-      details.append(...rows.filter(has).filter(({ key }) => !this.isCurve(key)).map((row) => this.field(prefix, row, values)));
+      details.append(...rows.filter(has).filter(({ key }) => !this.isCurve(key)).map((row) => this.field(prefix, row,
+        values)));
       for (const inner of new Set(rows.filter(({ key }) => this.isCurve(key)).map(({ key }) => key.split(".")[0])))
         details.append(this.curve(prefix + inner, valueAt(values, inner) as Table | undefined));
       const rest = rows.filter((row) => !has(row) && !this.isCurve(row.key));
@@ -132,7 +137,8 @@ export class Forms {
     const fault = element("span", { class: "fault", role: "alert" });
     const box = element("div", { class: "field" },
       element("label", { title: `${key}: ${plain(row.meaning)}${row.allowed ? ` Allowed: ${row.allowed}.` : ""}` },
-        element("span", { class: "name" }, lastOf(name.replaceAll(": ", ".")), ...(this.draft?.base_table && this.differs(key) ? [this.reset(key)] : [])),
+        element("span", { class: "name" }, lastOf(name.replaceAll(": ", ".")),
+          ...(this.draft?.base_table && this.differs(key) ? [this.reset(key)] : [])),
         input, element("span", { class: "unit" }, unit)), fault);
     this.listen(key, row, input, fault);
     return box;
@@ -146,12 +152,14 @@ export class Forms {
       return box;
     }
     if (row.type === "word" && row.words.length > 0) {
-      const select = element("select", attributes, ...(value === undefined ? [element("option", { value: "" }, "–")] : []),
+      const select = element("select", attributes,
+        ...(value === undefined ? [element("option", { value: "" }, "–")] : []),
         ...row.words.map((word) => element("option", { value: word }, word)));
       select.value = textOf(value);
       return select;
     }
-    const input = element("input", { type: "text", placeholder: row.allowed || row.type, autocomplete: "off", spellcheck: "false", ...attributes });
+    const input = element("input", { type: "text", placeholder: row.allowed || row.type, autocomplete: "off",
+      spellcheck: "false", ...attributes });
     input.value = String(this.pending.get(key) ?? textOf(value));
     if (this.isRegion(row.key)) input.setAttribute("list", "region-names");
     return input;
@@ -207,7 +215,8 @@ export class Forms {
   private curve(key: string, program: Table | undefined): HTMLElement {
     const fault = element("span", { class: "fault", role: "alert" });
     const send = (changes: object) =>
-      this.connection.order("set", { changes }).then(() => (fault.textContent = ""), (problem: Problem) => (fault.textContent = problem.message));
+      this.connection.order("set", { changes }).then(() => (fault.textContent = ""), (problem: Problem) =>
+        (fault.textContent = problem.message));
     const title = lastOf(key).replace("_", " ");
     const times = program?.time_s as number[] | undefined;
     if (!times) {
@@ -216,15 +225,18 @@ export class Forms {
       return element("div", { class: "field" }, button, fault);
     }
     const end = Number(valueAt(this.draft?.table, "time.end_s"));
-    const drawing = curveOf(times, program!.activity as number[], end, (time_s, activity) => void send({ [key]: { time_s, activity } }));
-    return element("div", { class: "field", "data-curve": key }, element("span", { class: "name" }, `${title}: activity over ${Math.round(end / 60)} min`), drawing, fault);
+    const drawing = curveOf(times, program!.activity as number[], end, (time_s, activity) =>
+      void send({ [key]: { time_s, activity } }));
+    return element("div", { class: "field", "data-curve": key },
+      element("span", { class: "name" }, `${title}: activity over ${Math.round(end / 60)} min`), drawing, fault);
   }
 
   private remove(name: string): HTMLElement {
     const button = element("button", { type: "button", class: "remove" }, `Remove ${name}`);
     const fault = element("span", { class: "fault", role: "alert" });
     button.addEventListener("click", () => {
-      this.connection.order("set", { changes: { [name]: null } }).catch((problem: Problem) => (fault.textContent = problem.message));
+      this.connection.order("set", { changes: { [name]: null } }).catch((problem: Problem) =>
+        (fault.textContent = problem.message));
     });
     return element("div", { class: "field" }, button, fault);
   }
@@ -232,12 +244,15 @@ export class Forms {
   // A new table: its required keys first, made when they are valid.
   private adding(): HTMLElement {
     const kind = element("select", { id: "add-kind", "aria-label": "Kind of table" });
-    const name = element("input", { type: "text", id: "add-name", placeholder: "name", "aria-label": "Name of the table" });
-    const region = element("input", { type: "text", id: "add-region", value: "all", list: "region-names", "aria-label": "Region" });
+    const name = element("input", { type: "text", id: "add-name", placeholder: "name",
+      "aria-label": "Name of the table" });
+    const region = element("input", { type: "text", id: "add-region", value: "all", list: "region-names",
+      "aria-label": "Region" });
     const add = element("button", { type: "submit", id: "add" }, "Add");
     const fault = element("span", { class: "fault", role: "alert" });
     const form = element("form", { id: "adding" }, kind, name, element("label", {}, "in ", region), add, fault);
-    const showRegion = () => (region.parentElement!.hidden = !this.schema.find(({ path }) => path === kind.value)?.rows.some(({ key }) => key === "region"));
+    const showRegion = () => (region.parentElement!.hidden = !this.schema.find(({ path }) =>
+      path === kind.value)?.rows.some(({ key }) => key === "region"));
     kind.addEventListener("change", showRegion);
     form.addEventListener("submit", (event) => {
       event.preventDefault();
@@ -259,7 +274,8 @@ export class Forms {
     const text = this.filter.value.trim().toLowerCase();
     for (const details of this.list.querySelectorAll<HTMLDetailsElement>(":scope > details")) {
       const schema = this.places().find(({ name }) => name === details.dataset.table)?.schema;
-      details.hidden = text !== "" && !`${details.dataset.table} ${schema?.rows.map(({ key }) => key).join(" ")}`.toLowerCase().includes(text);
+      details.hidden = text !== "" &&
+        !`${details.dataset.table} ${schema?.rows.map(({ key }) => key).join(" ")}`.toLowerCase().includes(text);
     }
   }
 }

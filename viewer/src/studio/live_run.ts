@@ -7,7 +7,8 @@ import type { Frame, Message, Numbers, Shape } from "./messages";
 function emptyData(name: string): RunData {
   return {
     name, summary: null, scenario: "", series: "", midline: "", shell: null, axes: [], letters: [], depth_word: "furrow",
-    frames_saved: 0, every: 1, box: { low: [-1, -1, -1], high: [1, 1, 1] }, fields: {}, regions: [], coloured_regions: [],
+    frames_saved: 0, every: 1, box: { low: [-1, -1, -1],
+      high: [1, 1, 1] }, fields: {}, regions: [], coloured_regions: [],
     topologies: [], arrays: [],
   };
 }
@@ -19,10 +20,13 @@ export class LiveTopology extends Topology {
   other: LiveTopology | null = null; // the run beside it, for differences
   colouredRegions: string[] = []; // those with some but not all cells
   private readonly members = new Map<string, Set<number>>(); // of each region
+  private centres: Float32Array | null = null;
+  private readonly mirrors = new Map<number, number>();
   private regionNumbers = new Float32Array(0); // smallest coloured region of each cell, from 1; 0: none
 
   constructor(readonly shape: Shape, private readonly given: Map<string, Numbers>) {
-    super({ ...emptyData(""), topologies: [{ times_s: [0], nodes: shape.nodes, elements: 0, cells: shape.cells }] }, 0, []);
+    super({ ...emptyData(""), topologies: [{ times_s: [0], nodes: shape.nodes, elements: 0, cells: shape.cells }] }, 0,
+      []);
     const ids = (name: string) => given.get(name) as Uint32Array;
     this.elements = ids("elements");
     this.cellOfElement = ids("cell_of_element");
@@ -61,7 +65,8 @@ export class LiveTopology extends Topology {
     const some = [...this.members].filter(([, { size }]) => size > 0 && size < this.cells);
     this.colouredRegions = some.map(([name]) => name);
     this.regionNumbers = new Float32Array(this.cells);
-    const bySize = some.map(([, members], i) => ({ members, number: i + 1 })).sort((a, b) => b.members.size - a.members.size);
+    const bySize = some.map(([, members], i) => ({ members, number: i + 1 })).sort((a, b) =>
+      b.members.size - a.members.size);
     for (const { members, number } of bySize) for (const cell of members) this.regionNumbers[cell] = number;
   }
 
@@ -115,8 +120,23 @@ export class LiveTopology extends Topology {
     return nodes.reduce((sum, node) => sum + values[node], 0) / nodes.length;
   }
 
-  /** Mean of the nodes of each cell at rest; um, 3 a cell. */
-  restCentres(): Float32Array {
+  /** Cell whose centre at rest is nearest to the mirror image, at −y, of that of a cell. */
+  mirrorOf(cell: number): number {
+    const known = this.mirrors.get(cell);
+    if (known !== undefined) return known;
+    const centres = (this.centres ??= this.restCentres());
+    let [best, least] = [cell, Infinity];
+    for (let c = 0; c < this.cells; ++c) {
+      const [x, y, z] = [0, 1, 2].map((k) => centres[3 * c + k] - (k === 1 ? -1 : 1) * centres[3 * cell + k]);
+      const apart = x * x + y * y + z * z;
+      if (apart < least) [best, least] = [c, apart];
+    }
+    this.mirrors.set(cell, best);
+    return best;
+  }
+
+  // Mean of the nodes of each cell at rest; um, 3 a cell.
+  private restCentres(): Float32Array {
     const centres = new Float32Array(3 * this.cells);
     this.elementsOfCell.forEach((_, cell) => {
       const nodes = this.nodesOfCell(cell);

@@ -36,10 +36,9 @@ class Studio {
   private readonly chosen: Chosen = { run: 0, beside: null };
   private readonly shapes = new Map<string, LiveTopology>();
   private readonly wants = [false, false]; // slots to be asked for at the next refresh
-  private readonly known_ = [-1, -1]; // index of the frame shown in each slot
+  private readonly frameShown = [-1, -1]; // index of the frame shown in each slot
   private at: number | null = null;
   private views: EmbryoViews | null = null;
-  private draft: DraftState | null = null;
   private selection = new Set<number>();
   private charts: Chart[] = [];
   private chartsAt = 0;
@@ -50,9 +49,12 @@ class Studio {
   private readonly time: TimeBar;
   private tools!: ToolsBar;
   private readonly start: Start;
+  private hasNoPicture = false;
+  private lastField = "region";
 
   constructor() {
-    const { fields, maps } = JSON.parse(byId("data").textContent!) as { fields: Field[]; maps: Record<string, string[]> };
+    const { fields, maps } = JSON.parse(byId("data").textContent!) as { fields: Field[]; maps: Record<string,
+      string[]> };
     this.known = fields;
     this.page = {
       format: 1, made_by: "", fields: [...fields], maps: { ...maps }, views: [], view_cut_um: 0.01, varied: [], outcomes: null,
@@ -60,8 +62,10 @@ class Studio {
     };
     const none: View = { name: "", title: "", label: "", sight: [0, 1, 0], up: [0, 0, 1], cut_axis: null };
     this.state = new State({
-      time: Infinity, playing: false, speed: 1, field: fields.find(({ name }) => name === "region") ?? fields[0], view: none, cut: null,
-      edges: true, shell: true, marks: false, picked: null, shown: new Set([0]), order: [0, 1], pointed: null, colourBy: "",
+      time: Infinity, playing: false, speed: 1, field: fields.find(({ name }) =>
+        name === "region") ?? fields[0], view: none, cut: null,
+      edges: true, shell: true, marks: false, picked: null, shown: new Set([0]), order: [0,
+        1], pointed: null, colourBy: "",
     });
     this.looks = new RunLooks(this.runs, this.page, this.state);
     this.connection = new Connection(this.token, {
@@ -71,11 +75,14 @@ class Studio {
       shape: (message) => this.takeShape(message),
       frame: (message) => this.takeFrame(message),
       connected: (on) => this.showConnected(on),
+      edited: () => this.chosen.run !== 0 && this.choose({ run: 0 }),
     });
     this.forms = new Forms(byId("forms"), this.connection);
-    this.panel = new RunsPanel(byId("runs"), this.chosen, this.connection, this.token, (chosen) => this.choose(chosen), (problem) => this.tell(problem));
+    this.panel = new RunsPanel(byId("runs"), this.chosen, this.connection, this.token, (chosen) => this.choose(chosen),
+      (problem) => this.tell(problem));
     this.time = new TimeBar(byId("timeline"), {
-      run: (until) => this.go(until), pause: () => void this.order("pause", { run: this.chosen.run }), step: () => void this.step(),
+      run: (until) => this.go(until), pause: () => void this.order("pause", { run: this.chosen.run }), step: () =>
+        void this.step(),
       lookAt: (time) => {
         this.at = time;
         this.ask();
@@ -138,29 +145,23 @@ class Studio {
   // What the server sends
 
   private takeDraft(draft: DraftState): void {
-    const isOther = this.draft !== null && draft.revision !== this.draft.revision;
-    this.draft = draft;
     const title = String(draft.table?.title ?? "");
     byId("title").textContent = draft.table ? `${title || draft.base || "scenario"}` : "no scenario is open";
     (byId("undo") as HTMLButtonElement).disabled = !draft.undo;
     (byId("redo") as HTMLButtonElement).disabled = !draft.redo;
-    byId("advice").replaceChildren(...[draft.problem, ...draft.advice].filter((line) => line !== "").map((line) => element("p", {}, line)));
+    byId("advice").replaceChildren(...[draft.problem, ...draft.advice].filter((line) => line !== "").map((line) =>
+      element("p", {}, line)));
     byId("text").textContent = draft.text ?? "";
     byId("take-scenario").setAttribute("href", `/take/0/scenario.toml?token=${encodeURIComponent(this.token)}`);
     byId("take-script").setAttribute("href", `/take/0/run.py?token=${encodeURIComponent(this.token)}`);
     this.forms.show(draft);
     if (!draft.table) void this.start.open();
-    if (isOther && !this.isActing) this.choose({ run: 0 });
     this.ask();
-  }
-
-  // An act changes the draft, too, and shows its run.
-  private get isActing(): boolean {
-    return this.panel.run(this.chosen.run)?.running === true || this.chosen.run !== 0 && document.activeElement?.closest("#acts-holder") !== null;
   }
 
   private takeRuns(runs: RunsState): void {
     this.panel.take(runs);
+    this.nameRuns();
     this.showTime();
   }
 
@@ -176,7 +177,7 @@ class Studio {
     const run = this.runs[head.slot];
     const before = run.shown;
     run.take(topology, message);
-    this.known_[head.slot] = head.index;
+    this.frameShown[head.slot] = head.index;
     this.wants[head.slot] = true;
     if (before !== topology && head.slot === 0) this.takeTopology(before, topology);
     if (this.runs[0].shown) this.runs[0].shown.other = this.chosen.beside === null ? null : this.runs[1].shown;
@@ -196,19 +197,29 @@ class Studio {
     const own = Object.entries(shape.own_fields).map(([name, range]): Field => (
       { name, label: name, unit: "", on_nodes: false, scale: "from-zero", map: "from_zero", ...rangeOf(range) }));
     this.page.fields = [...this.known, ...own, difference];
-    const isOther = before === null || before.cells !== topology.cells || before.nodes !== topology.nodes;
-    if (!isOther) return;
-    this.selection = new Set();
+    if (before?.cells !== topology.cells) this.selection = new Set();
+    if (before && hasSameSize(before, topology)) return; // at most, cells have divided
     this.page.views = Object.entries(shape.views).map(([name, view]) => ({ name, title: name, label: "", ...view }));
     this.page.view_cut_um = 0.01;
     this.state.set({ view: this.page.views[0], cut: null, edges: topology.cells <= mostCellsWithEdges });
     this.views?.remeasure();
-    byId("controls").replaceChildren(...new LookControls([this.runs[0]], this.page, this.state, () => this.views?.sight() ?? [1, 1, 1]).all());
+    byId("controls").replaceChildren(...new LookControls([this.runs[0]], this.page, this.state, () =>
+      this.views?.sight() ?? [1, 1, 1]).all());
   }
 
   private makeViews(): void {
-    this.views = new EmbryoViews(this.runs, this.page, this.state, this.looks, byId("canvases"), byId("legend") as HTMLCanvasElement);
-    const paintings = this.runs.map((run) => new Painting(this.views!.viewOf(run), (stroke) => this.takeStroke(stroke)));
+    if (this.hasNoPicture) return;
+    try {
+      this.views = new EmbryoViews(this.runs, this.page, this.state, this.looks, byId("canvases"),
+        byId("legend") as HTMLCanvasElement);
+    } catch (error) {
+      console.info("no picture:", error);
+      this.hasNoPicture = true;
+      this.tell("The tissue cannot be drawn, since this browser has no WebGL. Forms, runs and plots work.");
+      return;
+    }
+    const paintings = this.runs.map((run) => new Painting(this.views!.viewOf(run),
+      (stroke) => this.takeStroke(stroke)));
     this.tools = new ToolsBar(byId("tools"), byId("acts-holder"), paintings, {
       clear: () => this.select(new Set()),
       paintInto: (region) => this.select(new Set(region === "" ? [] : this.runs[0].shown!.membersOf(region))),
@@ -228,7 +239,8 @@ class Studio {
     byId("connection").hidden = on;
     if (!on) return;
     this.shapes.clear();
-    this.known_.fill(-1);
+    this.frameShown.fill(-1);
+    this.runs.forEach((run) => run.forgetRows());
     this.ask();
   }
 
@@ -242,20 +254,29 @@ class Studio {
       this.at = null;
       this.time.follow();
       this.runs[0].forgetRows();
-      this.known_[0] = -1;
+      this.frameShown[0] = -1;
     }
     if (before.beside !== this.chosen.beside) {
       this.runs[1].forgetRows();
       this.runs[1].shown = null;
-      this.known_[1] = -1;
+      this.frameShown[1] = -1;
     }
     if (before.run === 0 && this.chosen.run !== 0 && this.state.now.field.name === "region") this.colour("area-ratio");
     if (this.chosen.run === 0 && before.run !== 0) this.colour("region");
     this.state.set({ shown: new Set(this.chosen.beside === null ? [0] : [0, 1]) });
-    [0, 1].forEach((slot) => (this.runs[slot].label = this.panel.run(this.wanted(slot) ?? 0)?.title ?? "At rest"));
+    this.nameRuns();
     this.panel.refresh();
     this.showTime();
     this.ask();
+  }
+
+  private nameRuns(): void {
+    for (const [slot, run] of this.runs.entries()) {
+      const label = this.panel.run(this.wanted(slot) ?? 0)?.title ?? "At rest";
+      if (label === run.label) continue;
+      run.label = label;
+      this.views?.refresh();
+    }
   }
 
   private wanted(slot: number): number | null {
@@ -274,7 +295,7 @@ class Studio {
       this.wants[slot] = false;
       const at = slot === 1 ? (this.runs[0].shown ? this.runs[0].time : null) : this.at;
       this.connection.look({
-        slot, run, field: this.state.now.field.name, at_s: at, known: this.known_[slot],
+        slot, run, field: this.state.now.field.name, at_s: at, known: this.frameShown[slot],
         rows: this.runs[slot].series.rows.length, shapes: [...this.shapes.keys()],
       });
     }
@@ -289,10 +310,9 @@ class Studio {
   private fieldChanged(): void {
     if (this.state.now.field.name === this.lastField) return;
     this.lastField = this.state.now.field.name;
-    this.known_.fill(-1);
+    this.frameShown.fill(-1);
     this.ask();
   }
-  private lastField = "region";
 
   private updateRange(head: Frame): void {
     const field = this.state.now.field;
@@ -306,25 +326,14 @@ class Studio {
   // Selection and painting
 
   private takeStroke(stroke: Stroke): void {
-    const cells = this.tools.mirror.checked ? this.mirrored(stroke.cells) : stroke.cells;
+    const cells = new Set(stroke.cells);
+    if (this.tools.mirror.checked) for (const cell of stroke.cells) cells.add(this.runs[0].shown!.mirrorOf(cell));
     const next = new Set(this.selection);
-    for (const cell of cells) if (stroke.erases) next.delete(cell); else next.add(cell);
+    for (const cell of cells)
+      if (stroke.erases) next.delete(cell);
+      else next.add(cell);
     this.select(next);
     if (stroke.done && this.tools.target.value !== "") void this.paint(this.tools.target.value);
-  }
-
-  private mirrored(cells: Set<number>): Set<number> {
-    const centres = this.runs[0].shown!.restCentres();
-    const all = new Set(cells);
-    for (const cell of cells) {
-      let [best, least] = [cell, Infinity];
-      for (let c = 0; c < centres.length / 3; ++c) {
-        const apart = Math.hypot(centres[3 * c] - centres[3 * cell], centres[3 * c + 1] + centres[3 * cell + 1], centres[3 * c + 2] - centres[3 * cell + 2]);
-        if (apart < least) [best, least] = [c, apart];
-      }
-      all.add(best);
-    }
-    return all;
   }
 
   private select(cells: Set<number>): void {
@@ -364,7 +373,8 @@ class Studio {
     const failed = byId("failure");
     failed.hidden = run?.status !== "failed";
     if (run?.status !== "failed") return;
-    failed.replaceChildren(element("p", {}, element("strong", {}, `Run ${run.number} failed at ${timeText(run.time_s)}: `), run.failure));
+    failed.replaceChildren(element("p", {}, element("strong", {},
+      `Run ${run.number} failed at ${timeText(run.time_s)}: `), run.failure));
     if (run.failed_cell === null) return;
     const cell = run.failed_cell;
     const show = element("button", { type: "button", "data-cell": String(cell) }, `Show cell ${cell}`);
@@ -379,7 +389,8 @@ class Studio {
     this.chartRows = rows;
     this.chartsAt = now;
     for (const chart of this.charts) chart.destroy();
-    this.charts = this.chosen.run === 0 ? [] : seriesCharts(runs.filter(({ series }) => series.rows.length > 1), this.looks)
+    this.charts = this.chosen.run === 0 ? [] : seriesCharts(runs.filter(({ series }) => series.rows.length > 1),
+      this.looks)
       .map((content) => new TimeChart(content, this.state));
     byId("plots").replaceChildren(...this.charts.map(({ box }) => box));
   }
@@ -415,7 +426,8 @@ class Studio {
 
   private key(event: KeyboardEvent): void {
     const target = event.target as HTMLElement;
-    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" && !/^(INPUT|TEXTAREA)$/.test(target.tagName)) {
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" &&
+      !/^(INPUT|TEXTAREA)$/.test(target.tagName)) {
       event.preventDefault();
       return void this.order(event.shiftKey ? "redo" : "undo");
     }
@@ -426,6 +438,12 @@ class Studio {
     const view = this.page.views[Number(event.key) - 1];
     if (view) byId(`view-${view.name}`).click();
   }
+}
+
+function hasSameSize(a: LiveTopology, b: LiveTopology): boolean {
+  const [ends, others] = [a, b].map(({ shape }) => [...shape.box.low, ...shape.box.high]);
+  const size = Math.max(...ends) - Math.min(...ends);
+  return ends.every((end, i) => Math.abs(end - others[i]) < 0.05 * size);
 }
 
 function niceAbove(value: number): number {

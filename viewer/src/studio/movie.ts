@@ -6,12 +6,14 @@ const kinds: [string, string][] = [["video/mp4", "mp4"], ["video/webm", "webm"]]
 export async function movieOf(holder: HTMLElement, goesOn: () => boolean): Promise<{ name: string; content: Blob }> {
   const kind = kinds.find(([type]) => typeof MediaRecorder !== "undefined" && MediaRecorder.isTypeSupported(type));
   if (!kind) throw new Error("this browser records no movies; use plica.movie in Python");
-  const pictures = [...holder.querySelectorAll<HTMLCanvasElement>("canvas.picture")].filter((canvas) => canvas.clientWidth > 0);
+  const pictures = [...holder.querySelectorAll<HTMLCanvasElement>("canvas.picture")].filter((canvas) =>
+    canvas.clientWidth > 0);
   const canvas = document.createElement("canvas");
   canvas.width = 2 * Math.ceil(pictures.reduce((sum, one) => sum + one.width, 0) / 2); // even, as codecs want it
   canvas.height = 2 * Math.ceil(pictures[0].height / 2);
   const context = canvas.getContext("2d")!;
-  const recorder = new MediaRecorder(canvas.captureStream(perSecond), { mimeType: kind[0], videoBitsPerSecond: 8_000_000 });
+  const recorder = new MediaRecorder(canvas.captureStream(perSecond),
+    { mimeType: kind[0], videoBitsPerSecond: 8_000_000 });
   const parts: Blob[] = [];
   recorder.addEventListener("dataavailable", ({ data }) => parts.push(data));
   const ended = new Promise((resolve) => recorder.addEventListener("stop", resolve));

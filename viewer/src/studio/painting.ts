@@ -9,7 +9,7 @@ const ratio = 0.5; // pixels of the drawing of numbers / CSS pixel
 
 /** Drawing of a view in which each pixel is the number of the cell seen there. */
 class CellPixels {
-  private readonly renderer = new three.WebGLRenderer({ antialias: false, preserveDrawingBuffer: true });
+  private renderer: three.WebGLRenderer | null = null; // made with the first stroke
   private readonly material = new three.ShaderMaterial({
     clipping: true, side: three.DoubleSide,
     vertexShader: `#include <clipping_planes_pars_vertex>
@@ -47,21 +47,25 @@ class CellPixels {
     this.material.clippingPlanes = plane ? [plane] : null;
     this.width = Math.max(Math.round(view.size.width * ratio), 1);
     this.height = Math.max(Math.round(view.size.height * ratio), 1);
-    this.renderer.localClippingEnabled = true;
-    this.renderer.setSize(this.width, this.height, false);
-    this.renderer.setClearColor(0, 0);
-    this.renderer.outputColorSpace = three.LinearSRGBColorSpace;
-    this.renderer.render(scene, view.camera);
+    const renderer = (this.renderer ??= new three.WebGLRenderer({ antialias: false, preserveDrawingBuffer: true }));
+    renderer.localClippingEnabled = true;
+    renderer.setSize(this.width, this.height, false);
+    renderer.setClearColor(0, 0);
+    renderer.outputColorSpace = three.LinearSRGBColorSpace;
+    renderer.render(scene, view.camera);
     this.pixels = new Uint8Array(4 * this.width * this.height);
-    const gl = this.renderer.getContext();
+    const gl = renderer.getContext();
     gl.readPixels(0, 0, this.width, this.height, gl.RGBA, gl.UNSIGNED_BYTE, this.pixels);
     geometry.dispose();
   }
 
   /** Add the cells at the pixels of a box for which `inside` holds; CSS pixels from the upper left. */
-  collect(left: number, top: number, right: number, bottom: number, inside: (x: number, y: number) => boolean, into: Set<number>): void {
-    for (let row = Math.max(Math.floor(top * ratio), 0); row <= Math.min(Math.ceil(bottom * ratio), this.height - 1); ++row)
-      for (let column = Math.max(Math.floor(left * ratio), 0); column <= Math.min(Math.ceil(right * ratio), this.width - 1); ++column) {
+  collect(left: number, top: number, right: number, bottom: number, inside: (x: number, y: number) => boolean,
+    into: Set<number>): void {
+    for (let row = Math.max(Math.floor(top * ratio), 0); row <= Math.min(Math.ceil(bottom * ratio),
+      this.height - 1); ++row)
+      for (let column = Math.max(Math.floor(left * ratio), 0); column <= Math.min(Math.ceil(right * ratio),
+        this.width - 1); ++column) {
         const at = 4 * ((this.height - 1 - row) * this.width + column);
         const cell = this.pixels[at] + 256 * this.pixels[at + 1] + 65536 * this.pixels[at + 2] - 1;
         if (cell >= 0 && inside((column + 0.5) / ratio, (row + 0.5) / ratio)) into.add(cell);

@@ -12,8 +12,14 @@ const endings: Record<string, string> = {
   equilibrium: "at equilibrium", end_time: "ended", failed: "failed", paused: "paused", running: "running",
 };
 
+function timeOf(run: RunState): string {
+  const now = timeText(Number(run.time_s.toPrecision(4)));
+  return run.running ? `${now} of ${timeText(run.end_s)}` : `${endings[run.status]}, ${now}`;
+}
+
 export class RunsPanel {
   private state: RunsState = { runs: [], jobs: {} };
+  private shape = "";
   private readonly list = element("ul", { id: "run-list" });
   private readonly jobs = element("p", { id: "jobs", class: "note", role: "status" });
 
@@ -25,11 +31,21 @@ export class RunsPanel {
     holder.append(element("h2", {}, "Runs"), this.list, this.jobs);
   }
 
+  /** Show new states: times in place, so that a click during a run is not lost; all else by new elements. */
   take(state: RunsState): void {
-    const focused = (document.activeElement as HTMLElement | null)?.id;
+    const shape = JSON.stringify([state.runs.map((run) => ({ ...run, time_s: 0, steps: 0 })), this.chosen]);
     this.state = state;
-    this.list.replaceChildren(this.restItem(), ...state.runs.map((run) => this.item(run)));
     this.jobs.textContent = Object.entries(state.jobs).map(([name, what]) => `${name}: ${what}`).join("\n");
+    if (shape === this.shape)
+      for (const run of state.runs) this.list.querySelector(`[data-run="${run.number}"] .note`)!.textContent = timeOf(run);
+    else this.rebuild();
+    this.shape = shape;
+  }
+
+  private rebuild(): void {
+    const { state } = this;
+    const focused = (document.activeElement as HTMLElement | null)?.id;
+    this.list.replaceChildren(this.restItem(), ...state.runs.map((run) => this.item(run)));
     if (focused && this.list.querySelector(`#${CSS.escape(focused)}`)) byId(focused).focus();
   }
 
@@ -44,8 +60,10 @@ export class RunsPanel {
   private choice(number: number, text: string, note: string): HTMLElement {
     const radio = element("input", { type: "radio", name: "run", id: `show-${number}`, value: String(number) });
     radio.checked = this.chosen.run === number;
-    radio.addEventListener("change", () => this.show({ run: number, beside: this.chosen.beside === number ? null : this.chosen.beside }));
-    return element("label", {}, radio, element("span", { class: "run-title" }, text), element("span", { class: "note" }, note));
+    radio.addEventListener("change", () => this.show({ run: number, beside: this.chosen.beside === number ? null
+      : this.chosen.beside }));
+    return element("label", {}, radio, element("span", { class: "run-title" }, text),
+      element("span", { class: "note" }, note));
   }
 
   private restItem(): HTMLElement {
@@ -54,15 +72,16 @@ export class RunsPanel {
 
   private item(run: RunState): HTMLElement {
     const depth = this.depth(run);
-    const time = run.running ? `${timeText(Number(run.time_s.toPrecision(4)))} of ${timeText(run.end_s)}` : `${endings[run.status]}, ${timeText(Number(run.time_s.toPrecision(4)))}`;
-    const item = element("li", { "data-run": String(run.number), "data-status": run.status, style: `margin-left: ${Math.min(depth, 4) * 12}px` },
-      this.choice(run.number, `${run.number} ${run.title}`, time));
+    const item = element("li", { "data-run": String(run.number), "data-status": run.status,
+      style: `margin-left: ${Math.min(depth, 4) * 12}px` },
+      this.choice(run.number, `${run.number} ${run.title}`, timeOf(run)));
     const more = element("div", { class: "group" });
     const beside = element("input", { type: "checkbox", id: `beside-${run.number}` });
     beside.checked = this.chosen.beside === run.number;
     beside.disabled = this.chosen.run === run.number;
     beside.addEventListener("change", () => this.show({ beside: beside.checked ? run.number : null }));
-    more.append(element("label", {}, beside, " beside"), this.file(run.number, "scenario.toml", "TOML"), this.file(run.number, "run.py", "Python"),
+    more.append(element("label", {}, beside, " beside"), this.file(run.number, "scenario.toml", "TOML"),
+      this.file(run.number, "run.py", "Python"),
       this.order(`results-${run.number}`, "Results…", () => this.results(run.number)),
       this.order(`remove-${run.number}`, "Remove", () => {
         if (this.chosen.run === run.number) this.show({ run: 0 });
@@ -87,11 +106,13 @@ export class RunsPanel {
   }
 
   private file(run: number, name: string, text: string): HTMLElement {
-    return element("a", { href: `/take/${run}/${name}?token=${encodeURIComponent(this.token)}`, download: name, class: "small" }, text);
+    return element("a", { href: `/take/${run}/${name}?token=${encodeURIComponent(this.token)}`, download: name,
+      class: "small" }, text);
   }
 
   private results(run: number): void {
-    const name = prompt("Directory for the results, in the start folder. The scenario is run again from rest.", `results-${run}`);
+    const name = prompt("Directory for the results, in the start folder. The scenario is run again from rest.",
+      `results-${run}`);
     if (name) this.connection.order("results", { run, name }).catch(this.tell);
   }
 }

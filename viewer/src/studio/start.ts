@@ -1,19 +1,20 @@
 // Choice of a scenario: built-in ones, and files of the start folder.
 import { byId, element } from "../dom";
 import type { Connection, Problem } from "./connection";
-import { pictures } from "./pictures";
 
 export class Start {
   private readonly dialog = byId("start") as HTMLDialogElement;
   private readonly fault = element("p", { class: "fault", role: "alert" });
   private readonly cards = element("div", { id: "cards" });
   private readonly files = element("div", { id: "files" });
-  private readonly filter = element("input", { type: "search", id: "find-file", placeholder: "Find a file", "aria-label": "Find a file" });
+  private readonly filter = element("input", { type: "search", id: "find-file", placeholder: "Find a file",
+    "aria-label": "Find a file" });
 
   constructor(private readonly connection: Connection) {
     const close = element("button", { type: "button", id: "close-start" }, "Close");
     close.addEventListener("click", () => this.dialog.close());
-    this.dialog.append(element("header", {}, element("h2", {}, "Open a scenario or a tissue"), close), this.fault, this.cards,
+    this.dialog.append(element("header", {}, element("h2", {}, "Open a scenario or a tissue"), close), this.fault,
+      this.cards,
       element("h2", {}, "Files of this folder"), this.filter, this.files);
     this.filter.addEventListener("input", () => {
       for (const file of this.files.children) (file as HTMLElement).hidden = !file.textContent!.includes(this.filter.value.trim());
@@ -22,7 +23,8 @@ export class Start {
 
   async open(): Promise<void> {
     if (!this.dialog.open) this.dialog.showModal();
-    const { scenarios, files } = (await this.connection.order("gallery")) as unknown as { scenarios: Record<string, string>; files: string[] };
+    const { scenarios, files } = (await this.connection.order("gallery")) as unknown as { scenarios: Record<string,
+      string>; files: string[] };
     this.cards.replaceChildren(...Object.entries(scenarios).map(([name, title]) => this.card(name, title)));
     this.files.replaceChildren(...files.map((name) => this.choice("file", name, name)));
     if (files.length === 0) this.files.textContent = "None. Scenarios (.toml), meshes (.vtu), polygons (.obj, .off, .ply, .vtp) and points (.csv) appear here.";
@@ -30,8 +32,6 @@ export class Start {
 
   private card(name: string, title: string): HTMLElement {
     const card = this.choice("card", name, "");
-    const picture = pictures[name];
-    if (picture) card.append(element("img", { src: picture, alt: "", width: "168", height: "112" }));
     card.append(element("strong", {}, name), element("span", {}, title));
     return card;
   }

@@ -17,17 +17,21 @@ const replayS = 8; // seconds that a replay takes
 export class TimeBar {
   private readonly go = button("go", "Run", () => this.toggle());
   private readonly stepButton = button("step", "Step", () => this.actions.step());
-  private readonly slider = element("input", { type: "range", id: "time", min: "0", max: "1", step: "any", value: "0", "aria-label": "Time" });
+  private readonly slider = element("input", { type: "range", id: "time", min: "0", max: "1", step: "any", value: "0",
+    "aria-label": "Time" });
   private readonly text = element("output", { id: "time-text", for: "time" });
-  private readonly until = element("input", { type: "number", id: "until", min: "0", step: "any", "aria-label": "Run to, minutes", class: "strength" });
+  private readonly until = element("input", { type: "number", id: "until", min: "0", step: "any",
+    "aria-label": "Run to, minutes", class: "strength" });
   private readonly replay = button("replay", "Replay", () => this.play());
   private state: RunState | undefined;
   private at: number | null = null;
   private playingSince: number | null = null;
 
   constructor(holder: HTMLElement, private readonly actions: TimeActions) {
-    const to = button("go-to", "Run to", () => this.actions.run(this.until.value === "" ? null : 60 * Number(this.until.value)));
-    holder.append(this.go, this.stepButton, to, this.until, element("span", {}, "min"), this.slider, this.text, this.replay);
+    const to = button("go-to", "Run to", () =>
+      this.actions.run(this.until.value === "" ? null : 60 * Number(this.until.value)));
+    holder.append(this.go, this.stepButton, to, this.until, element("span", {}, "min"), this.slider, this.text,
+      this.replay);
     this.slider.addEventListener("input", () => {
       this.playingSince = null;
       const value = Number(this.slider.value);

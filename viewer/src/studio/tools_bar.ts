@@ -19,13 +19,16 @@ export class ToolsBar {
   private readonly names = element("datalist", { id: "region-names" });
   private readonly count = element("output", { id: "selected-count" });
   private readonly erase = element("input", { type: "checkbox", id: "erase" });
-  private readonly size = element("input", { type: "range", id: "brush-size", min: "4", max: "160", value: "24", "aria-label": "Size of the brush, pixels" });
-  private readonly newName = element("input", { type: "text", id: "new-region", placeholder: "new region", "aria-label": "Name of the new region", size: "10" });
+  private readonly size = element("input", { type: "range", id: "brush-size", min: "4", max: "160", value: "24",
+    "aria-label": "Size of the brush, pixels" });
+  private readonly newName = element("input", { type: "text", id: "new-region", placeholder: "new region",
+    "aria-label": "Name of the new region", size: "10" });
   private readonly acts = element("div", { id: "acts", class: "group" });
   private readonly lasting = element("span", { class: "group" });
   private readonly when = element("span", { id: "act-time", class: "note" });
 
-  constructor(private readonly holder: HTMLElement, acts: HTMLElement, private readonly paintings: Painting[], private readonly actions: ToolActions) {
+  constructor(private readonly holder: HTMLElement, acts: HTMLElement, private readonly paintings: Painting[],
+    private readonly actions: ToolActions) {
     const choice = element("div", { class: "group", role: "radiogroup", "aria-label": "Tool" });
     for (const [tool, text, key] of tools) {
       const made = button(`tool-${tool}`, text, () => this.choose(tool));
@@ -40,7 +43,8 @@ export class ToolsBar {
     holder.append(choice, element("span", { class: "group painter" }, element("label", {}, "size ", this.size),
       element("label", {}, this.erase, " erase"),
       element("label", { title: "cells at −y get the same as those at y" }, this.mirror, " mirror"),
-      element("label", {}, "paint ", this.target), this.count, button("clear-selection", "Clear", () => actions.clear()), this.newName, make), this.names);
+      element("label", {}, "paint ", this.target), this.count, button("clear-selection", "Clear", () =>
+        actions.clear()), this.newName, make), this.names);
     this.size.addEventListener("input", () => paintings.forEach((one) => (one.size = Number(this.size.value))));
     this.erase.addEventListener("change", () => paintings.forEach((one) => (one.erases = this.erase.checked)));
     this.target.addEventListener("change", () => actions.paintInto(this.target.value));
@@ -52,7 +56,8 @@ export class ToolsBar {
   choose(tool: Tool): void {
     for (const painting of this.paintings) painting.choose(tool);
     this.holder.classList.toggle("painting", tool !== "rotate");
-    for (const [name] of tools) document.getElementById(`tool-${name}`)!.setAttribute("aria-pressed", String(name === tool));
+    for (const [name] of tools) document.getElementById(`tool-${name}`)!.setAttribute("aria-pressed",
+      String(name === tool));
   }
 
   key(key: string): boolean {
@@ -68,14 +73,17 @@ export class ToolsBar {
     const load = strength("pull-strength", "20", "Pull, Pa");
     this.acts.append(
       button("act-cut", "Cut", () => this.actions.act("cut", 0)),
-      element("span", { class: "pair" }, button("act-darken", "Darken to", () => this.actions.act("darken", Number(light.value))), light),
-      element("span", { class: "pair" }, button("act-pull", "Pull with", () => this.actions.act("pull", Number(load.value))), load, " Pa"));
+      element("span", { class: "pair" }, button("act-darken", "Darken to", () => this.actions.act("darken",
+        Number(light.value))), light),
+      element("span", { class: "pair" }, button("act-pull", "Pull with", () => this.actions.act("pull",
+        Number(load.value))), load, " Pa"));
   }
 
   showRegions(regions: string[]): void {
     const before = this.target.value;
     const names = regions.filter((name) => name !== "all");
-    this.target.replaceChildren(element("option", { value: "" }, "selection"), ...names.map((name) => element("option", { value: name }, `region ${name}`)));
+    this.target.replaceChildren(element("option", { value: "" }, "selection"),
+      ...names.map((name) => element("option", { value: name }, `region ${name}`)));
     this.target.value = names.includes(before) ? before : "";
     this.names.replaceChildren(...regions.map((name) => element("option", { value: name })));
   }
@@ -87,9 +95,12 @@ export class ToolsBar {
 
   /** `at`: time of an act on what is shown; null at rest, where acts are no acts. */
   showActs(at: string | null, lasting: string[]): void {
-    this.when.textContent = at === null ? "Choose a run: an act on it makes another run, from the shown time on." : `at ${at}`;
+    this.when.textContent = at === null ? "Choose a run: an act on it makes another run, from the shown time on."
+      : `at ${at}`;
     for (const one of this.acts.querySelectorAll<HTMLButtonElement>("button")) one.disabled = at === null;
-    const made = at === null ? [] : lasting.map((name) => button(`end-${name}`, `${name.startsWith("pressure") ? "Let go" : "Light again"}: ${name.split(".")[1]}`, () => this.actions.end(name)));
+    const made = at === null ? [] : lasting.map((name) => button(`end-${name}`,
+      `${name.startsWith("pressure") ? "Let go" : "Light again"}: ${name.split(".")[1]}`, () =>
+        this.actions.end(name)));
     if (this.lasting.textContent !== made.map((one) => one.textContent).join("")) this.lasting.replaceChildren(...made);
   }
 }

@@ -1,2 +1,0 @@
-// Pictures of the built-in scenarios, by name.
-export const pictures: Record<string, string> = {};
