@@ -1,7 +1,8 @@
-# Bundles viewer/ with npm's packages (viewer/package-lock.json) into two pages, of runs and of a study, for plica_core.
+# Bundles viewer/ with npm's packages (viewer/package-lock.json) into pages: of runs and of a study, for plica_core, and of the studio, for the Python package.
 set(viewer_dir ${PROJECT_SOURCE_DIR}/viewer)
 set(report_template ${CMAKE_BINARY_DIR}/generated/report_template.html)
 set(study_template ${CMAKE_BINARY_DIR}/generated/study_template.html)
+set(studio_page ${CMAKE_BINARY_DIR}/generated/studio_page.html)
 find_program(PLICA_NPM npm)
 find_program(PLICA_NODE node)
 if(NOT PLICA_NPM OR NOT PLICA_NODE)
@@ -17,11 +18,11 @@ add_custom_command(OUTPUT ${installed}
   DEPENDS ${viewer_dir}/package.json ${viewer_dir}/package-lock.json
   WORKING_DIRECTORY ${viewer_dir}
   COMMENT "Installing the viewer's packages (npm ci)" VERBATIM)
-add_custom_command(OUTPUT ${report_template} ${study_template}
-  COMMAND ${PLICA_NODE} ${viewer_dir}/build.mjs ${report_template} ${study_template}
+add_custom_command(OUTPUT ${report_template} ${study_template} ${studio_page}
+  COMMAND ${PLICA_NODE} ${viewer_dir}/build.mjs ${report_template} ${study_template} ${studio_page}
   DEPENDS ${installed} ${viewer_dir}/build.mjs ${viewer_sources}
   COMMENT "Bundling the reports' pages" VERBATIM)
-add_custom_target(report_template DEPENDS ${report_template} ${study_template})
+add_custom_target(report_template DEPENDS ${report_template} ${study_template} ${studio_page})
 add_dependencies(plica_core report_template)
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/show/report.cpp PROPERTIES
   COMPILE_DEFINITIONS "PLICA_REPORT_TEMPLATE=\"${report_template}\";PLICA_STUDY_TEMPLATE=\"${study_template}\""

@@ -1,13 +1,13 @@
-// Bundles the viewer into two HTML files without data: node build.mjs RUNS.html STUDY.html
+// Bundles the viewer into HTML files without data: node build.mjs RUNS.html STUDY.html STUDIO.html
 import { build } from "esbuild";
 import { readFile, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const [ofRuns, ofStudy] = process.argv.slice(2);
-if (!ofStudy) {
-  console.error("usage: node build.mjs RUNS.html STUDY.html");
+const [ofRuns, ofStudy, ofStudio] = process.argv.slice(2);
+if (!ofStudio) {
+  console.error("usage: node build.mjs RUNS.html STUDY.html STUDIO.html");
   process.exit(2);
 }
 
@@ -56,3 +56,4 @@ async function make(file, folder, licences) {
 const [three, uplot] = await Promise.all([licence("three"), licence("uplot")]);
 await make(ofRuns, "", [three, uplot]);
 await make(ofStudy, "study", [uplot]);
+await make(ofStudio, "studio", [three, uplot]);

@@ -21,6 +21,7 @@
 #include "scenario/advice.hpp"
 #include "scenario/builtin.hpp"
 #include "scenario/print.hpp"
+#include "scenario/schema.hpp"
 #include "scenario/setup.hpp"
 #include "show/looks.hpp"
 #include "signals.hpp"
@@ -157,6 +158,35 @@ nb::dict calibration(const CheckedScenario& scenario, const std::vector<std::str
   return answer;
 }
 
+/// Return all tables of a scenario: path, meaning, group and rows of keys, as the reference page lists them.
+nb::list schema() {
+  const auto text = [](std::string_view view) { return nb::str(view.data(), view.size()); };
+  const auto texts = [text](const std::vector<std::string_view>& views) {
+    nb::list list;
+    for (const std::string_view view : views) list.append(text(view));
+    return list;
+  };
+  nb::list tables;
+  for (const ScenarioTable& table : scenario_tables()) {
+    nb::list rows;
+    for (const KeyRow& key : table.rows) {
+      nb::dict row;
+      row["key"] = text(key.key);
+      row["type"] = key.type();
+      row["allowed"] = key.allowed.text();
+      row["words"] = texts(key.allowed.words);
+      row["meaning"] = text(key.meaning);
+      row["required"] = key.options.required;
+      row["is_path"] = key.options.is_path;
+      row["shapes"] = texts(key.options.shapes);
+      row["instead_of"] = text(key.options.instead_of);
+      rows.append(row);
+    }
+    tables.append(nb::make_tuple(text(table.path), text(table.meaning), text(table.group), rows));
+  }
+  return tables;
+}
+
 /// Return the quantities that colour an embryo, with their colour scales.
 nb::dict colour_fields_by_name() {
   nb::dict fields;
@@ -259,6 +289,7 @@ NB_MODULE(_core, module) {
         return read_checkpoint_bytes({saved.c_str(), saved.size()}).scenario;
       },
       nb::arg("saved"));
+  module.def("schema", &schema);
   module.def("colour_fields", &colour_fields_by_name);
   module.def("views", &views_by_name, nb::arg("points"), nb::arg("hexahedra"));
   module.def(

@@ -25,6 +25,7 @@ from .results import Frame, Frames, Run
 from .results import open_run as open
 from .scenario import Scenario, builtin_scenarios
 from .simulation import Simulation, Step, load
+from .studio import studio
 from .study import Study
 from .studies import Calibration, Comparison, Trial, calibrate, compare
 from .tissue import Tissue
@@ -66,7 +67,11 @@ __all__ = [
     "posterior",
     "render",
     "reproduce",
+<<<<<<< HEAD
     "tissue_of_labels",
     "tissue_of_monolayer",
+=======
+    "studio",
+>>>>>>> wt-studio
     "verdict",
 ]

@@ -98,7 +98,9 @@ PACKAGES = {"pandas": ("pandas", "plot"), "matplotlib": ("matplotlib", "plot"), 
             "meshio": ("meshio", "plot"), "IPython": ("ipython", "notebook"), "xarray": ("xarray", "study"),
             "SALib": ("SALib", "study"), "sklearn": ("scikit-learn", "study"), "threadpoolctl": ("threadpoolctl", "study"),
             "skimage": ("scikit-image", "image"), "scipy": ("scipy", "image"), "imageio": ("imageio", "movie"),
-            "imageio_ffmpeg": ("imageio-ffmpeg", "movie"), "tables": ("tables", "tyssue"), "tifffile": ("tifffile", "image"), "zarr": ("zarr", "image")}
+            "imageio_ffmpeg": ("imageio-ffmpeg", "movie"), "tables": ("tables", "tyssue"), "tifffile": ("tifffile", "image"),
+            "zarr": ("zarr", "image"), "starlette": ("starlette", "studio"), "uvicorn": ("uvicorn", "studio"),
+            "websockets": ("websockets", "studio")}
 
 
 def needed(module: str, what: str) -> Any:

@@ -1,11 +1,10 @@
-// Controls: view, colour, cut, visible parts; time and playback; saved pictures and tables; keys.
+// Controls of the report: its look, time and playback, saved pictures and tables, keys.
 import { download, element } from "./dom";
+import { LookControls, button } from "./look_controls";
 import type { PageData } from "./page_data";
 import type { Run } from "./run";
-import type { Cut, State } from "./state";
+import type { State } from "./state";
 import { time as timeText } from "./text";
-
-const axes = ["x", "y", "z"];
 
 export interface Actions {
   savePicture: (() => void) | null;
@@ -23,103 +22,28 @@ export function frameTimes(runs: Run[]): number[] {
 export class Controls {
   private readonly times: number[];
   private readonly slider: HTMLInputElement;
-  private readonly cutAt = element("input", { type: "range", step: "0.5", id: "cut-at", "aria-label": "Position of the cut, µm" });
-  private readonly cutText = element("output", { id: "cut-text" });
+  private readonly looks: LookControls;
 
   constructor(
     holder: HTMLElement, timeline: HTMLElement, private readonly runs: Run[], private readonly page: PageData,
-    private readonly state: State, private readonly actions: Actions,
+    private readonly state: State, actions: Actions,
   ) {
     this.times = frameTimes(runs);
+    this.looks = new LookControls(runs, page, state, () => actions.sight());
     this.slider = element("input", {
       type: "range", id: "time", min: "0", max: String(Math.max(this.times.length - 1, 0)), step: "1", "aria-label": "Time",
     });
     if (runs.some((run) => run.hasFrames)) {
-      holder.append(this.viewButtons(), this.fieldChoice(), this.cutChoice(), this.switches());
-      holder.append(this.button("save-picture", "Save PNG", () => actions.savePicture?.()));
+      holder.append(...this.looks.all());
+      holder.append(button("save-picture", "Save PNG", () => actions.savePicture?.()));
     }
     timeline.append(...this.timeControls());
-    timeline.append(this.button("save-table", "Save CSV", () => actions.saveTable()));
+    timeline.append(button("save-table", "Save CSV", () => actions.saveTable()));
     document.addEventListener("keydown", (event) => this.key(event));
   }
 
-  private button(id: string, text: string, act: () => void): HTMLButtonElement {
-    const button = element("button", { type: "button", id }, text);
-    button.addEventListener("click", act);
-    return button;
-  }
-
-  private viewButtons(): HTMLElement {
-    const group = element("div", { class: "group", role: "group", "aria-label": "View" });
-    for (const view of this.page.views) {
-      const button = this.button(`view-${view.name}`, view.title.replace("-", " "), () => this.lookFrom(view.name));
-      button.title = view.label;
-      group.append(button);
-    }
-    return group;
-  }
-
-  private lookFrom(name: string): void {
-    const view = this.page.views.find((candidate) => candidate.name === name)!;
-    const cut: Cut | null =
-      view.cut_axis === null ? null
-        : { axis: view.cut_axis, at: this.page.view_cut_um, keep: view.sight[view.cut_axis] > 0 ? 1 : -1 };
-    this.state.set({ view: { ...view }, cut });
-  }
-
-  private fieldChoice(): HTMLElement {
-    const select = element("select", { id: "field" });
-    for (const field of this.page.fields) select.append(element("option", { value: field.name }, field.label));
-    select.value = this.state.now.field.name;
-    select.addEventListener("change", () =>
-      this.state.set({ field: this.page.fields.find((field) => field.name === select.value)! }));
-    return element("label", {}, "Colour ", select);
-  }
-
-  private cutChoice(): HTMLElement {
-    const select = element("select", { id: "cut" }, element("option", { value: "" }, "none"));
-    axes.forEach((axis) => select.append(element("option", { value: axis }, `across ${axis}`)));
-    select.addEventListener("change", () => {
-      const axis = axes.indexOf(select.value);
-      const keep = this.actions.sight()[axis] >= 0 ? 1 : -1;
-      this.state.set({ cut: axis < 0 ? null : { axis, at: this.page.view_cut_um, keep } });
-    });
-    this.cutAt.addEventListener("input", () => {
-      const { cut } = this.state.now;
-      if (cut) this.state.set({ cut: { ...cut, at: Number(this.cutAt.value) } });
-    });
-    const showCut = () => {
-      const { cut } = this.state.now;
-      select.value = cut ? axes[cut.axis] : "";
-      this.cutAt.hidden = this.cutText.hidden = !cut;
-      if (!cut) return;
-      const ends = this.runs.map(({ data }) => [data.box.low[cut.axis], data.box.high[cut.axis]]);
-      this.cutAt.min = String(Math.floor(Math.min(...ends.map(([low]) => low))));
-      this.cutAt.max = String(Math.ceil(Math.max(...ends.map(([, high]) => high))));
-      this.cutAt.value = String(cut.at);
-      this.cutText.textContent = `${axes[cut.axis]} = ${Math.round(cut.at)} µm`;
-    };
-    this.state.on(["cut"], showCut);
-    showCut();
-    return element("label", { class: "group" }, "Cut ", select, this.cutAt, this.cutText);
-  }
-
-  private switches(): HTMLElement {
-    const group = element("div", { class: "group" });
-    const add = (key: "edges" | "shell" | "marks", text: string) => {
-      const box = element("input", { type: "checkbox", id: key });
-      box.checked = this.state.now[key];
-      box.addEventListener("change", () => this.state.set({ [key]: box.checked }));
-      group.append(element("label", {}, box, ` ${text}`));
-    };
-    add("edges", "cell edges");
-    if (this.runs.some((run) => run.data.shell)) add("shell", "vitelline membrane");
-    add("marks", "axes");
-    return group;
-  }
-
   private timeControls(): HTMLElement[] {
-    const play = this.button("play", "Play", () => this.togglePlay());
+    const play = button("play", "Play", () => this.togglePlay());
     const text = element("output", { id: "time-text", for: "time" });
     const speed = element("select", { id: "speed", "aria-label": "Speed" });
     const usual = this.state.now.speed;
@@ -171,7 +95,7 @@ export class Controls {
     else if (event.key === ".") this.goTo(here + 1);
     else if (event.key === "Home") this.goTo(0);
     else if (event.key === "End") this.goTo(this.times.length - 1);
-    else if (view && this.runs.some((run) => run.hasFrames)) this.lookFrom(view.name);
+    else if (view && this.runs.some((run) => run.hasFrames)) this.looks.lookFrom(view.name);
     else return;
     event.preventDefault();
   }

@@ -4,7 +4,7 @@ import { LineMaterial } from "three/examples/jsm/lines/LineMaterial.js";
 import { LineSegments2 } from "three/examples/jsm/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/examples/jsm/lines/LineSegmentsGeometry.js";
 import { colourAt, partOf } from "./colour";
-import type { Field, PageData } from "./page_data";
+import type { Field, PageData, RunData } from "./page_data";
 import type { Place, Run, Topology } from "./run";
 import { capsuleOutline, cutByPlane, cutOutlines, type CutPolygon } from "./section";
 import type { Cut } from "./state";
@@ -61,7 +61,8 @@ export class EmbryoScene {
   private readonly cap = new three.Mesh(new three.BufferGeometry(), this.capMaterial);
   private readonly capLines = new three.LineSegments(new three.BufferGeometry(), this.capLineMaterial);
   private readonly pickedLines = new LineSegments2(new LineSegmentsGeometry(), this.pickedMaterial);
-  private readonly shell: three.Mesh | null;
+  private readonly shell = new three.Mesh(new three.BufferGeometry(), this.shellMaterial);
+  private shellSize: RunData["shell"] = null;
   private readonly shellCut = new LineSegments2(new LineSegmentsGeometry(), this.shellCutMaterial);
 
   private topology: Topology | null = null;
@@ -72,9 +73,8 @@ export class EmbryoScene {
 
   constructor(private readonly run: Run, page: PageData) {
     for (const [name, map] of Object.entries(page.maps)) this.textures.set(name, mapTexture(map, name === "steps"));
-    this.shell = this.makeShell();
     this.scene.add(new three.AmbientLight(0xffffff, 2.1), this.light, this.light.target);
-    for (const object of [this.boundary, this.lines, this.cap, this.capLines, this.pickedLines, this.shellCut]) {
+    for (const object of [this.boundary, this.lines, this.cap, this.capLines, this.pickedLines, this.shell, this.shellCut]) {
       object.frustumCulled = false;
       this.scene.add(object);
     }
@@ -85,7 +85,7 @@ export class EmbryoScene {
     this.light.position.set(-0.5, 0.7, 1).applyQuaternion(camera.quaternion);
   }
 
-  show(place: Place, field: Field, cut: Cut | null, options: { edges: boolean; shell: boolean }, picked: number): void {
+  show(place: Place, field: Field, cut: Cut | null, options: { edges: boolean; shell: boolean }, picked: readonly number[]): void {
     if (place.topology !== this.topology) this.take(place.topology);
     const topology = place.topology;
     topology.positions(place.moment, place.part, this.positions);
@@ -102,8 +102,18 @@ export class EmbryoScene {
     this.fillPicked(topology, picked);
     this.lines.visible = options.edges;
     this.capLines.visible = options.edges && cut !== null;
-    if (this.shell) this.shell.visible = options.shell;
+    this.shell.visible = options.shell && this.shellSize !== null;
     this.shellCut.visible = options.shell && this.fillShellCut(cut);
+  }
+
+  /** The boundary in the present shape, and the cell of each of its facets (five points), for drawings of ids. */
+  get ids(): { boundary: three.Mesh; cellOfFacet: (facet: number) => number; facets: number; plane: three.Plane | null } {
+    const topology = this.topology!;
+    return {
+      boundary: this.boundary, facets: topology.facets.length / 4,
+      cellOfFacet: (facet) => topology.cellOfElement[topology.elementOfFacet[facet]],
+      plane: this.cap.visible ? this.plane : null,
+    };
   }
 
   /** First cell hit by a ray; -1 if none. */
@@ -125,24 +135,24 @@ export class EmbryoScene {
     let reach = -Infinity;
     for (let n = 0; n < this.positions.length; n += 3)
       reach = Math.max(reach, x * this.positions[n] + y * this.positions[n + 1] + z * this.positions[n + 2]);
-    const size = this.shell?.visible ? this.run.data.shell : null;
+    const size = this.shell.visible ? this.shellSize : null;
     if (size) reach = Math.max(reach, size.half_axis_um * Math.abs(x) + size.radius_um);
     return reach - direction.dot(new three.Vector3(...this.run.centre));
   }
 
-  private makeShell(): three.Mesh | null {
-    const size = this.run.data.shell;
-    if (!size) return null;
-    const geometry = new three.CapsuleGeometry(size.radius_um, 2 * size.half_axis_um, 48, 128, 1).rotateZ(Math.PI / 2);
-    const shell = new three.Mesh(geometry, this.shellMaterial);
-    this.scene.add(shell);
-    return shell;
+  private fillShell(size: RunData["shell"]): void {
+    this.shellSize = size;
+    this.shell.geometry.dispose();
+    this.shell.geometry = size
+      ? new three.CapsuleGeometry(size.radius_um, 2 * size.half_axis_um, 48, 128, 1).rotateZ(Math.PI / 2)
+      : new three.BufferGeometry();
   }
 
   // New cells: arrays of the right size, and corners of triangles. Each facet has a fifth corner at its centre, which
   // preserves symmetry.
   private take(topology: Topology): void {
     this.topology = topology;
+    if (this.run.data.shell !== this.shellSize) this.fillShell(this.run.data.shell);
     this.positions = new Float32Array(3 * topology.nodes);
     this.values = new Float32Array(Math.max(topology.nodes, topology.cells));
     const facets = topology.facets.length / 4;
@@ -232,18 +242,18 @@ export class EmbryoScene {
 
   // Outline of the membrane in the plane of the cut; false if there is none.
   private fillShellCut(cut: Cut | null): boolean {
-    const size = this.run.data.shell;
+    const size = this.shellSize;
     const outline = size && cut ? capsuleOutline(size.half_axis_um, size.radius_um, cut) : [];
     this.shellCut.geometry.dispose();
     this.shellCut.geometry = new LineSegmentsGeometry().setPositions(outline.length > 0 ? outline : [0, 0, 0, 0, 0, 0]);
     return outline.length > 0;
   }
 
-  private fillPicked(topology: Topology, cell: number): void {
-    this.pickedLines.visible = cell >= 0;
-    if (cell < 0) return;
+  private fillPicked(topology: Topology, cells: readonly number[]): void {
+    this.pickedLines.visible = cells.length > 0;
+    if (cells.length === 0) return;
     const points: number[] = [];
-    const own = new Set(topology.elementsOfCell[cell]);
+    const own = new Set(cells.flatMap((cell) => topology.elementsOfCell[cell]));
     const push = (a: number, b: number) => {
       for (const node of [a, b]) points.push(...this.positions.subarray(3 * node, 3 * node + 3));
     };

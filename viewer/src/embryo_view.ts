@@ -17,7 +17,7 @@ const settleTime = 200; // ms without a change after which a picture is drawn fi
 export class EmbryoViews {
   private readonly painter: Painter;
   private readonly views: RunView[];
-  private readonly radius: number; // um, of a ball around every run
+  private radius: number; // um, of a ball around every run
   private large: RunView | null = null; // enlarged one of many
   private focus: RunView | null = null; // looks at the picked cell until a view is chosen
   private isFine = false;
@@ -74,6 +74,18 @@ export class EmbryoViews {
     this.makeStale();
     this.views.forEach((view) => view.showCaption(this.looks));
     this.showLegend();
+  }
+
+  viewOf(run: Run): RunView {
+    return this.views.find((view) => view.run === run)!;
+  }
+
+  /** Adapt to runs that have become larger or smaller, or are loaded now, and look at them again. */
+  remeasure(): void {
+    this.radius = Math.max(...this.views.map(({ run }) => Math.hypot(...run.halfSize)));
+    for (const view of this.views) view.resize(this.radius);
+    this.makeStale();
+    this.lookFrom();
   }
 
   /** Viewing direction, into the picture. */

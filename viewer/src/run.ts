@@ -130,9 +130,10 @@ export interface Place {
 }
 
 export class Run {
-  readonly series: Table;
+  series: Table;
   readonly midline: Table;
   readonly topologies: Topology[];
+  marked: readonly number[] = []; // cells outlined beside the picked one
   readonly frames: { topology: Topology; moment: number; time: number }[] = [];
   private loading: Promise<void> | null = null;
   private isLoaded = false;

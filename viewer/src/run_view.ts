@@ -138,7 +138,7 @@ export class RunView {
     const place = this.run.placeAt(time);
     const cell = picked?.run === this.run.number ? this.run.ancestorAt(picked.id, place.topology) : -1;
     this.scene ??= new EmbryoScene(this.run, this.page);
-    this.scene.show(place, field, cut, { edges, shell }, cell);
+    this.scene.show(place, field, cut, { edges, shell }, cell < 0 ? this.run.marked : [...this.run.marked, cell]);
     this.canvas.dataset.cells = String(place.topology.cells);
     this.stale = false;
     this.moved = true;
@@ -185,6 +185,11 @@ export class RunView {
     const margins = this.isSmall ? smallMargins : usualMargins;
     const part = (margin: number, side: number) => Math.max(1 - (2 * margin) / side, 0.3);
     return Math.min((part(margins.side, width) * this.camera.right) / wide, (part(margins.top, height) * this.camera.top) / high);
+  }
+
+  /** Scene in the present shape; null before it is drawn. */
+  get drawn(): EmbryoScene | null {
+    return this.scene;
   }
 
   cellAt(clientX: number, clientY: number): number {

@@ -1,0 +1,310 @@
+"""A run of the studio: a recorded `plica run` in a thread of its own, whose frames and states are kept.
+
+What is shown is always the run of a scenario file. An act during a run makes another scenario, which differs from a time on;
+its run continues from a state that both share. Steps never end where the user pauses, so a run is bitwise
+identical to one from the command line."""
+from __future__ import annotations
+
+import csv
+import math
+import os
+import shutil
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from time import monotonic
+from typing import Any, Optional
+
+from .. import _core
+from ..errors import FileError, NumericsError, PlicaError
+from ..scenario import Scenario
+from ..simulation import Simulation
+from .acts import running_acts
+from .frames import Frame, FrameFile
+from .messages import packed
+from .shapes import shape_message, values_now
+
+FRAME_APART_S = 0.02  # of wall time, so that quick runs are not slowed down
+MOST_KEPT = 64
+INSTANT_S = 1e-6
+
+
+class StudioRun:
+    """Run in a directory of the session. `parent` and `from_s`: the run and the time of the state that it continues."""
+
+    def __init__(self, number: int, directory: Path, scenario: Scenario, told: Callable[[], None], *, base: str = "",
+                 title: str = "", parent: Optional[StudioRun] = None, act_s: float = 0.0, threads: Optional[int] = None) -> None:
+        self.number, self.directory, self.scenario, self.base, self.title = number, directory, scenario, base, title
+        self.parent, self.act_s, self.threads = parent, act_s, threads
+        self.results, self.kept = directory / "results", directory / "kept"
+        self.kept.mkdir(parents=True, exist_ok=True)
+        self.file = FrameFile(directory / "frames.bin")
+        self.shapes = [path.read_bytes() for path in sorted(directory.glob("shape-*.bin"))]
+        self.columns: list[str] = []
+        self.rows: list[list[Optional[float]]] = []
+        self.notes: list[str] = []
+        self.status, self.failure = "paused", ""
+        self.failed_cell: Optional[int] = None
+        self.from_s = 0.0
+        self.end_s = float(scenario["time.end_s"])
+        self.lasting = running_acts(scenario.to_dict(), math.inf)
+        self._told, self._goal_s, self._steps_left = told, -math.inf, 0
+        self._order = threading.Condition()
+        self._thread: Optional[threading.Thread] = None
+        self._closing, self._divisions = False, 0
+        self._shown_at, self._checkpoint = -math.inf, (0, 0)
+        self._read_rows()
+
+    # Orders, from any thread
+
+    def go(self, until_s: float = math.inf) -> None:
+        """Run to the first step at or after a time."""
+        self._give(until_s, 0)
+
+    def step(self) -> None:
+        self._give(-math.inf, 1)
+
+    def pause(self) -> None:
+        self._give(-math.inf, 0)
+
+    def _give(self, goal_s: float, steps: int) -> None:
+        with self._order:
+            self._goal_s, self._steps_left = goal_s, steps
+            if not self.is_over and not self._closing and self._thread is None and (goal_s > -math.inf or steps):
+                self.status = "running"
+                self._thread = threading.Thread(target=self._work, name=f"plica studio run {self.number}", daemon=True)
+                self._thread.start()
+            self._order.notify()
+
+    def close(self) -> None:
+        """End the thread after the step under way; the run can be resumed."""
+        with self._order:
+            self._closing = True
+            self._order.notify()
+            thread = self._thread
+        if thread is not None:
+            thread.join()
+
+    @property
+    def is_over(self) -> bool:
+        return self.status in ("equilibrium", "end_time", "failed")
+
+    @property
+    def time_s(self) -> float:
+        return float(self.rows[-1][0] or 0.0) if self.rows else self.from_s
+
+    def summary(self) -> dict[str, Any]:
+        return {"number": self.number, "title": self.title, "status": self.status, "time_s": self.time_s,
+            "end_s": self.end_s,
+                "steps": len(self.rows) - 1 if self.rows else 0, "failure": self.failure, "failed_cell": self.failed_cell,
+                "parent": self.parent and self.parent.number, "act_s": self.act_s, "from_s": self.from_s,
+                "notes": self.notes, "running": self.status == "running", "lasting": self.lasting}
+
+    # The thread
+
+    def _work(self) -> None:
+        try:
+            sim = self._begin()
+            self._show(sim, force=True)
+            self._loop(sim)
+        except (PlicaError, ValueError, OSError, MemoryError) as error:
+            self._end("failed", str(error) or type(error).__name__, getattr(error, "cell", None))
+        finally:
+            with self._order:
+                self._thread = None
+
+    def _loop(self, sim: Simulation) -> None:
+        while not sim.finished:
+            with self._order:
+                while not self._closing and self._steps_left == 0 and self._goal_s <= self.time_s:
+                    if self.status != "paused":
+                        self.status = "paused"
+                        self._show(sim, force=True)
+                        self._told()
+                    self._order.wait()
+                if self._closing:
+                    return
+                self._steps_left = max(self._steps_left - 1, 0)
+            if self.status != "running":
+                self.status = "running"
+                self._told()
+            try:
+                self._take_step(sim)
+            except NumericsError as error:
+                self._show(sim, force=True)
+                sim._core.end_record()
+                return self._end("failed", error.reason, error.cell)
+        if sim._core.is_recording:
+            self._show(sim, force=True)
+            sim._core.end_record()
+        self._end(sim.status, "", None)
+
+    def _end(self, status: str, failure: str, cell: Optional[int]) -> None:
+        self.status, self.failure, self.failed_cell = status, failure, cell
+        self._told()
+
+    def _take_step(self, sim: Simulation) -> None:
+        if not sim._core.step(math.inf):
+            return
+        self._keep_state(sim)
+        self.rows.append(self._row(sim))
+        texts = [*sim._core.warnings]
+        if (sim.measures.get("self_intersections") or 0) > 0:
+            texts.append(sim._core.crossing_warning)
+        self.notes += [text for text in texts if text not in self.notes]
+        self._show(sim)
+
+    def _row(self, sim: Simulation) -> list[Optional[float]]:
+        measures = sim.measures
+        self.columns = self.columns or list(measures)
+        return [sim.time_s, *(measures[name] for name in self.columns[1:])]
+
+    # Beginning: at rest, from the run's own checkpoint, or from a state of its parent
+
+    def _begin(self) -> Simulation:
+        has_begun = (self.results / "checkpoint.h5").exists()
+        sim = None if has_begun else self._continued()
+        if sim is None:
+            sim = Simulation(self.scenario, threads=self.threads)
+        if not has_begun:
+            self.from_s = sim.time_s
+            self._take_over_rows()
+        self.notes += sim._core.begin_record(str(self.results), "resume" if has_begun else "overwrite")
+        self.file.forget_after(sim.time_s)
+        self.rows = [row for row in self.rows if (row[0] or 0.0) <= sim.time_s + INSTANT_S]
+        if not self.rows:
+            self.rows.append(self._row(sim))
+        if not self.shapes:
+            self._add_shape(sim)
+        return sim
+
+    def _continued(self) -> Optional[Simulation]:
+        """Continue the newest kept state from which this scenario takes the same steps as its parent's; None: from rest.
+
+        Before the last snapshot at or before the act, steps end on the same times in both scenarios."""
+        every_s = float(self.scenario["output.frame_every_s"])
+        shared_s, run, origin = math.inf, self, self.parent
+        while origin is not None:
+            # A state of an earlier run also has to come before the act that parted the two.
+            shared_s = min(shared_s, math.floor(run.act_s / every_s + INSTANT_S) * every_s if every_s > 0 else 0.0)
+            for bound_s, path in reversed(origin.kept_states()):
+                if bound_s > shared_s + 4 * every_s:  # certainly too late
+                    continue
+                try:
+                    core = _core.Simulation(self.scenario._ready, self.threads or 0, path.read_bytes())
+                except FileError:
+                    return None  # another law, say: its memory does not fit
+                if core.time_s <= shared_s + INSTANT_S:
+                    sim = object.__new__(Simulation)
+                    sim._begin(self.scenario, core)
+                    return sim
+            run, origin = origin, origin.parent
+        return None
+
+    def _take_over_rows(self) -> None:
+        if self.parent is not None and not self.rows and self.from_s > 0:
+            self.columns = self.parent.columns
+            self.rows = [row for row in self.parent.rows if (row[0] or 0.0) <= self.from_s + INSTANT_S]
+
+    def _read_rows(self) -> None:
+        """Read what an earlier server has recorded."""
+        file = self.results / "series.csv"
+        if not file.exists():
+            return
+        with file.open(newline="") as lines:
+            table = list(csv.reader(lines))
+        self.columns = table[0]
+        own = [[float(text) if text else None for text in row] for row in table[1:] if len(row) == len(self.columns)]
+        self.from_s = own[0][0] or 0.0 if own else 0.0
+        if self.parent is not None:
+            self.rows = [row for row in self.parent.rows if (row[0] or 0.0) < self.from_s - INSTANT_S]
+        self.rows += own
+
+    # States that acts continue
+
+    def _keep_state(self, sim: Simulation) -> None:
+        """Keep the newest checkpoint by a second link to it: the recorder replaces the file, and does not change it."""
+        checkpoint = self.results / "checkpoint.h5"
+        try:
+            found = os.stat(checkpoint)
+        except FileNotFoundError:
+            return
+        if (found.st_ino, found.st_mtime_ns) == self._checkpoint:
+            return
+        self._checkpoint = (found.st_ino, found.st_mtime_ns)
+        state = self.kept / f"{sim.steps:08d} {sim.time_s!r}.h5"
+        state.unlink(missing_ok=True)
+        try:
+            os.link(checkpoint, state)
+        except OSError:  # a file system without links
+            shutil.copyfile(checkpoint, state)
+        states = self.kept_states()
+        if len(states) > MOST_KEPT:
+            for _, path in states[1 : MOST_KEPT // 2 : 2]:
+                path.unlink()
+
+    def kept_states(self) -> list[tuple[float, Path]]:
+        """Return the kept states with a time at or before which each was, oldest first."""
+        return [(float(path.stem.split(" ")[1]), path) for path in sorted(self.kept.glob("*.h5"))]
+
+    # Frames
+
+    def _add_shape(self, sim: Simulation) -> None:
+        """Add the shape that follows a division, or the first."""
+        shape = shape_message(sim, f"{self.number}/{len(self.shapes)}")
+        (self.directory / f"shape-{len(self.shapes):04d}.bin").write_bytes(shape)
+        self.shapes.append(shape)
+        self._divisions = sim._core.divisions
+
+    def _show(self, sim: Simulation, force: bool = False) -> None:
+        now = monotonic()
+        is_new = not self.file.frames or self.file.frames[-1].time_s < sim.time_s
+        if not is_new or self.file.is_full or (not force and now - self._shown_at < FRAME_APART_S):
+            return
+        self._shown_at = now
+        if sim._core.divisions != self._divisions:
+            self._add_shape(sim)
+        self.file.add(sim.time_s, len(self.shapes) - 1, sim.positions.astype("f4"), values_now(sim))
+        self._told()
+
+    @property
+    def _inherited(self) -> list[tuple[StudioRun, int]]:
+        if self.parent is None or self.from_s <= 0:
+            return []
+        return [(run, i) for run, i in self.parent.all_frames() if run.file.frames[i].time_s < self.from_s - INSTANT_S]
+
+    def all_frames(self) -> list[tuple[StudioRun, int]]:
+        """Return the frames of the run and, before the state that it continues, of its parent."""
+        return [*self._inherited, *((self, i) for i in range(len(self.file.frames)))]
+
+    def frame_message(self, want: dict[str, Any]) -> list[bytes]:
+        """Return what the page lacks: the frame it asks for, its shape, and rows of measures. Nothing if all is known."""
+        frames = self.all_frames()
+        if not frames:
+            return []
+        at_s = want.get("at_s")
+        index = len(frames) - 1
+        if at_s is not None:
+            times = [run.file.frames[i].time_s for run, i in frames]
+            index = max((n for n, time_s in enumerate(times) if time_s <= at_s + INSTANT_S), default=0)
+        if index == want.get("known") and len(self.rows) == want.get("rows"):
+            return []
+        run, i = frames[index]
+        return run._pack(i, self, index, len(frames), want)
+
+    def _pack(self, i: int, shown: StudioRun, index: int, count: int, want: dict[str, Any]) -> list[bytes]:
+        frame: Frame = self.file.frames[i]
+        shape = f"{self.number}/{frame.shape}"
+        field = want["field"]
+        arrays = {"positions": self.file.positions(i)}
+        head: dict[str, Any] = {"kind": "frame", "slot": want["slot"], "run": shown.number, "index": index,
+            "count": count,
+                                "time_s": frame.time_s, "shape": shape, "field": field}
+        if field in self.file.ends:
+            arrays["values"] = self.file.values(i, field)
+            ends = [run.file.ends[field] for run in (self, shown) if field in run.file.ends]
+            head["range"] = _core.colour_range(field, min(low for low, _ in ends), max(high for _, high in ends))
+        first = int(want.get("rows", 0))
+        head |= {"columns": shown.columns, "first_row": first, "rows": shown.rows[first:]}
+        known = shape in want.get("shapes", [])
+        return [*([] if known else [self.shapes[frame.shape]]), packed(head, arrays)]

@@ -1,0 +1,499 @@
+"""plica studio: drafts, runs and acts, and what its server refuses. The page itself: viewer/tests/studio.test.mjs."""
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import plica
+from plica import ScenarioError
+
+pytest.importorskip("starlette")
+pytest.importorskip("uvicorn")
+client = pytest.importorskip("websockets.sync.client")
+
+from plica.studio.draft import Draft, toml, typed  # noqa: E402
+from plica.studio.frames import FrameFile  # noqa: E402
+from plica.studio.server import PAGE  # noqa: E402
+from plica.studio.session import Refused, Session  # noqa: E402
+from plica.studio.shapes import surface  # noqa: E402
+
+SHORT = {"format": 1, "base": "furrow-slice", "time": {"end_s": 120.0}, "output": {"frame_every_s": 15}}
+PATIENCE_S = 300
+KILLS = int(os.environ.get("STUDIO_KILLS", "8"))
+
+
+def wait(is_so, what=""):
+    start = time.monotonic()
+    while not is_so():
+        assert time.monotonic() - start < PATIENCE_S, what
+        time.sleep(0.01)
+
+
+@pytest.fixture
+def session(tmp_path):
+    made = Session(tmp_path, lambda: None, threads=1)
+    made.open(Draft.of(plica.Scenario(SHORT)))
+    yield made
+    made.close()
+
+
+def run_to(session, number, time_s):
+    session.order("go", {"run": number, "until_s": time_s})
+    run = session.runs[number]
+    wait(lambda: run.is_over or (run.time_s >= time_s and run.status == "paused"), run.summary())
+    return run
+
+
+def last_positions(run):
+    return run.file.positions(len(run.file.frames) - 1)
+
+
+def repeated(text, run, folder):
+    """Run a scenario file from rest to the time of a run, in another place."""
+    file = folder / "again.toml"
+    file.write_text(text)
+    sim = plica.Simulation(plica.Scenario(file), threads=1)
+    while sim.time_s < run.time_s and sim.step() is not None:
+        pass
+    assert sim.time_s == run.time_s
+    return sim
+
+
+# Drafts
+
+
+def test_a_draft_is_written_as_differences_and_reads_back():
+    draft = Draft.of("furrow-slice")
+    assert draft.text() == 'format = 1\nbase = "furrow-slice"\n'
+    draft.set({"cortex.apical.tension_mN_per_m": 1.5, "region.spot": {"ids": [3, 4]}})
+    assert "tension_mN_per_m = 1.5" in draft.text() and "ids = [3, 4]" in draft.text() and len(draft.text()) < 200
+    read = plica.Scenario(draft.text()).to_dict()
+    read.pop("expect", None)
+    assert read == draft.table
+    draft.undo()
+    draft.undo()
+    assert draft.text() == 'format = 1\nbase = "furrow-slice"\n'
+    draft.redo()
+    assert draft.table["cortex"]["apical"]["tension_mN_per_m"] == 1.5
+
+
+def test_a_removed_table_is_written_whole():
+    draft = Draft.of("furrow-slice")
+    draft.set({"cortex.walls": None})
+    assert "base" not in draft.text()
+    assert "walls" not in plica.Scenario(draft.text()).to_dict()["cortex"]
+
+
+def test_an_invalid_change_is_refused_with_its_key_and_changes_nothing():
+    draft = Draft.of("furrow-slice")
+    before = draft.table
+    with pytest.raises(ScenarioError) as caught:
+        draft.set({"cortex.apical.tension_mN_per_m": -1})
+    assert [one.key for one in caught.value.diagnostics] == ["cortex.apical.tension_mN_per_m"]
+    assert draft.table is before and draft.place == 0
+
+
+@pytest.mark.parametrize("kind, text, value", [
+    ("number", "1.5", 1.5), ("number", "adaptive", "adaptive"), ("number", "", None), ("integer", "3", 3),
+    ("[low, high]", "-42, 42", [-42, 42]), ("3 integers", "[1, 2, 3]", [1, 2, 3]), ("list of numbers", "0, 1.5",
+        [0, 1.5]),
+    ("list of words", "apical, basal", ["apical", "basal"]), ("word", "apical", "apical"), ("number", "1; x", "1; x")])
+def test_texts_of_fields_become_values(kind, text, value):
+    assert typed(text, kind) == value
+
+
+def test_every_built_in_scenario_is_written_and_read_back():
+    for name in plica.builtin_scenarios():
+        table = Draft.of(name).table
+        read = plica.Scenario(toml(table)).to_dict()
+        assert read == table, name
+
+
+def test_the_surface_is_that_of_a_cube_of_cubes():
+    sim = plica.Simulation({"embryo": {"shape": "block", "length_um": 20, "width_um": 20, "cell_height_um": 20,
+        "cells": [2, 2, 2]},
+                            "contraction": {"apical": {"region": "all", "tension_mN_per_m": 1}}})
+    shape = surface(sim.hexahedra, sim.hexahedron_cell)
+    assert len(shape["facets"]) == 24 and len(shape["outlines"]) == 48
+    corners = sim.rest_positions[shape["facets"]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    centres = corners.mean(axis=1) - sim.rest_positions.mean(axis=0)
+    assert ((normals * centres).sum(axis=1) > 0).all()  # outward
+
+
+# Runs and acts
+
+
+def test_a_run_has_the_bits_of_the_command_line_wherever_it_pauses(session, tmp_path):
+    number = session.order("start", {"until_s": 20})["run"]
+    run = session.runs[number]
+    wait(lambda: run.status == "paused" and run.time_s >= 20)
+    session.order("step", {"run": number})
+    run_to(session, number, 1e9)
+    assert run.status == "end_time" and run.time_s == 120
+    sim = repeated(session.scenario_text(number), run, tmp_path)
+    assert np.array_equal(last_positions(run), sim.positions.astype("f4").ravel())
+    assert len(run.rows) - 1 == sim.steps
+    assert run.rows[-1][1:] == [None if v is None else v for v in list(sim.measures.values())[1:]]
+
+
+def test_acts_are_repeated_to_the_same_bits(session, tmp_path):
+    """A cut between snapshots, light, a pull (another law, so from rest) and letting go, each on the run before."""
+    number = session.order("start", {"until_s": 52})["run"]
+    wait(lambda: session.runs[number].status == "paused" and session.runs[number].time_s >= 52)
+    for kind, at_s, more in [("cut", 50.03, {}), ("darken", 61, {"strength": 0.3}), ("pull", 70, {"strength": 30}),
+                             ("end", 82.5, {"name": "pressure.pull-1"}), ("end", 95, {"name": "ablation.dark-1"})]:
+        run_to(session, number, at_s)
+        number = session.order("act", {"run": number, "at_s": at_s, "kind": kind, "cells": [20, 21, 22], **more})["run"]
+    run = run_to(session, number, 1e9)
+    assert run.status == "end_time"
+    table = run.scenario.to_dict()
+    assert table["ablation"]["cut-1"]["at_s"] == 50.1 and table["ablation"]["dark-1"]["until_s"] == 95
+    sim = repeated(session.scenario_text(number), run, tmp_path)
+    assert np.array_equal(last_positions(run), sim.positions.astype("f4").ravel())
+    continued = [one for one in session.runs.values() if one.from_s > 0]
+    assert len(continued) >= 3, "acts that add no law continue a kept state"
+
+
+def test_an_act_leaves_the_run_it_began_from(session):
+    number = session.order("start", {"until_s": 60})["run"]
+    first = session.runs[number]
+    wait(lambda: first.status == "paused" and first.time_s >= 60)
+    end_s, before = first.time_s, last_positions(first).copy()
+    other = session.order("act", {"run": number, "at_s": 30, "kind": "cut", "cells": [20]})["run"]
+    run_to(session, other, 60)
+    assert first.time_s == end_s and np.array_equal(last_positions(first), before)
+    assert session.draft.table["ablation"] and not first.scenario.to_dict().get("ablation")
+    times = [run.file.frames[i].time_s for run, i in session.runs[other].all_frames()]
+    assert times == sorted(times) and times[0] == 0
+
+
+def test_acts_that_cannot_be_are_refused_with_a_reason(session):
+    number = session.order("start", {"until_s": 5})["run"]
+    wait(lambda: session.runs[number].status == "paused" and session.runs[number].time_s >= 5)
+    for given, text in [({"kind": "cut", "cells": []}, "no cells are selected"),
+        ({"kind": "squeeze", "cells": [1]}, "unknown"),
+                        ({"kind": "end", "cells": [], "name": "ablation.none"},
+                            "not an act"), ({"kind": "cut", "cells": [10**6]}, "ids")]:
+        with pytest.raises((Refused, ValueError), match=text):
+            session.order("act", {"run": number, "at_s": 5, **given})
+            made = session.runs[max(session.runs)]
+            wait(lambda: made.is_over)
+            raise Refused(made.failure)
+
+
+def test_painting_makes_regions_of_ids_and_can_be_undone(session):
+    session.order("paint", {"region": "stripe", "ids": [5, 3, 3, 4]})
+    assert session.draft.table["region"]["stripe"]["ids"] == [3, 4, 5]
+    session.order("paint", {"region": "mesoderm", "ids": [1]})  # was chosen by selectors
+    assert session.draft.table["region"]["mesoderm"] == {"ids": [1]}
+    session.order("undo", {})
+    session.order("undo", {})
+    assert "stripe" not in session.draft.table["region"]
+    with pytest.raises(ScenarioError):
+        session.order("paint", {"region": "mesoderm", "ids": []})  # tables need it
+    with pytest.raises(Refused):
+        session.order("paint", {"region": "../x", "ids": [1]})
+
+
+def test_a_failing_run_says_why_and_keeps_its_frames(tmp_path):
+    session = Session(tmp_path, lambda: None, threads=1)
+    session.open(Draft.of(plica.Scenario({
+        "embryo": {"shape": "sheet", "length_um": 120, "width_um": 100, "cell_height_um": 10, "cell_count": 120},
+        "elasticity": {"corner_barrier_Pa": 0}, "region": {"stripe": {"y_um": [-20, 20]}}, "time": {"end_s": 300},
+        "contraction": {"apical": {"region": "stripe", "stiffness_nN_per_um": 20}}})))
+    run = session.runs[session.order("start", {})["run"]]
+    wait(lambda: run.is_over)
+    assert run.status == "failed" and "t = " in run.failure and run.file.frames
+    session.close()
+
+
+def test_results_are_written_and_compared(session, tmp_path):
+    number = session.order("start", {})["run"]
+    wait(lambda: session.runs[number].is_over)
+    session.order("results", {"run": number, "name": "taken"})
+    wait(lambda: session.jobs["taken"] != "being written")
+    assert "same positions" in session.jobs["taken"], session.jobs
+    assert (tmp_path / "taken" / "summary.json").exists()
+    with pytest.raises(Refused, match="exists"):
+        session.order("results", {"run": number, "name": "taken"})
+
+
+def test_the_exported_script_runs(session):
+    text = session.script_text(0)
+    assert 'base = "furrow-slice"' in text
+    compile(text, "run.py", "exec")
+
+
+# Restarts
+
+
+def test_a_session_comes_back_as_it_was(session, tmp_path):
+    number = session.order("start", {"until_s": 40})["run"]
+    run = session.runs[number]
+    wait(lambda: run.status == "paused" and run.time_s >= 40)
+    session.order("set", {"changes": {"cortex.apical.tension_mN_per_m": "1.9"}})
+    session.close()
+    again = Session(tmp_path, lambda: None, threads=1)
+    assert again.draft.table == session.draft.table and again.draft.place == session.draft.place
+    back = again.runs[number]
+    assert len(back.file.frames) == len(run.file.frames) and back.rows == run.rows
+    run_to(again, number, 1e9)
+    sim = repeated(again.scenario_text(number), back, tmp_path)
+    assert np.array_equal(last_positions(back), sim.positions.astype("f4").ravel()) and len(back.rows) - 1 == sim.steps
+    again.close()
+
+
+def test_a_killed_server_loses_nothing_but_the_step_under_way(tmp_path):
+    """Killed at any moment, from opening the session on to the end of its run."""
+    code = """if True:
+        import sys, time, pathlib
+        from plica.studio.session import Session
+        print("begins", flush=True)
+        session = Session(pathlib.Path(sys.argv[1]), lambda: None, threads=1)
+        session.runs[1].go()
+        while not session.runs[1].is_over:
+            time.sleep(0.005)
+        session.close()
+        print("is over", flush=True)
+    """
+    first = Session(tmp_path, lambda: None, threads=1)
+    first.open(Draft.of(plica.Scenario(SHORT)))
+    first.order("start", {"until_s": 0})
+    first.close()
+    begun = []
+    for kill in range(KILLS):
+        with subprocess.Popen([sys.executable, "-c", code, str(tmp_path)], stdout=subprocess.PIPE,
+            text=True) as process:
+            process.stdout.readline()
+            # Only so long that several are needed to reach the end.
+            before = time.monotonic()
+            while time.monotonic() - before < 0.02 * (kill + 1) and process.poll() is None:
+                time.sleep(0.001)
+            process.send_signal(signal.SIGKILL)
+        file = tmp_path / ".plica-studio" / "run-0001" / "frames.bin"
+        begun.append(file.exists() and len(FrameFile(file).frames))
+    last = subprocess.run([sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True,
+        timeout=PATIENCE_S)
+    assert "is over" in last.stdout, (begun, last.stdout, last.stderr)
+    session = Session(tmp_path, lambda: None, threads=1)
+    run = session.runs[1]
+    assert run.status == "end_time", (begun, run.summary())
+    sim = repeated(session.scenario_text(1), run, tmp_path)
+    assert np.array_equal(last_positions(run), sim.positions.astype("f4").ravel()), begun
+    assert len(run.rows) - 1 == sim.steps, begun
+    times = [frame.time_s for frame in run.file.frames]
+    assert times == sorted(set(times))
+    session.close()
+
+
+def test_half_a_frame_is_left_out(tmp_path):
+    file = FrameFile(tmp_path / "frames.bin")
+    values = {name: np.full(4, 2, "f4") for name in ("displacement", "speed")}
+    values |= {name: np.full(2, 3, "f4") for name in ("area-ratio", "pressure", "volume", "contraction", "generation",
+        "self-intersections")}
+    for time_s in (0.0, 1.0):
+        file.add(time_s, 0, np.arange(12, dtype="f4").reshape(4, 3), values)
+    with (tmp_path / "frames.bin").open("ab") as out:
+        out.write(b"x" * 40)
+    read = FrameFile(tmp_path / "frames.bin")
+    assert [frame.time_s for frame in read.frames] == [0, 1]
+    assert read.positions(1).tolist() == list(range(12)) and read.values(1, "pressure").tolist() == [3, 3]
+    read.forget_after(0.5)
+    assert len(FrameFile(tmp_path / "frames.bin").frames) == 1
+
+
+# Files
+
+
+def test_files_are_those_of_the_folder(session, tmp_path):
+    outside = tmp_path.parent / "outside.toml"
+    outside.write_text('base = "furrow-slice"\n')
+    (tmp_path / "link.toml").symlink_to(outside)
+    (tmp_path / "own.toml").write_text('base = "furrow-slice"\n[cortex.apical]\ntension_mN_per_m = 1.1\n')
+    (tmp_path / "reaches.toml").write_text('[embryo]\nshape = "surface"\nfile = "/etc/passwd"\n')
+    for path in ("../outside.toml", str(outside), "link.toml", "/etc/passwd", ".plica-studio/session.json",
+        "reaches.toml", "none.toml"):
+        with pytest.raises((Refused, plica.PlicaError, ValueError)):
+            session.order("open", {"source": path})
+    with pytest.raises(Refused):
+        session.order("set", {"changes": {"embryo.file": "/etc/passwd"}})
+    with pytest.raises(Refused):
+        session.order("set", {"changes": {"embryo": {"shape": "surface", "file": "/etc/passwd"}}})
+    with pytest.raises(Refused):
+        session.order("set", {"changes": {"base": "/etc/passwd"}})
+    session.order("open", {"source": "own.toml"})
+    assert session.draft.table["cortex"]["apical"]["tension_mN_per_m"] == 1.1
+    assert "own.toml" in session.order("gallery", {})["files"]
+
+
+def test_a_tissue_file_is_opened(session, tmp_path):
+    lines = ["OFF", "9 4 0"] + [f"{20 * x} {20 * y} 0" for y in range(3) for x in range(3)]
+    lines += [f"4 {i} {i + 1} {i + 4} {i + 3}" for i in (0, 1, 3, 4)]
+    (tmp_path / "sheet.off").write_text("\n".join(lines) + "\n")
+    session.order("open", {"source": "sheet.off"})
+    assert session.draft.table["embryo"]["shape"] == "surface"
+    wait(lambda: session.rest.cells == 4)
+
+
+# The server
+
+
+@pytest.fixture
+def studio(tmp_path):
+    if not PAGE.exists():
+        pytest.skip("built without the viewer")
+    made = plica.studio("furrow-slice", folder=tmp_path, threads=1)
+    wait(lambda: _status(made.url) == 200)
+    yield made
+    made.stop()
+
+
+def _status(url, **headers):
+    try:
+        with urllib.request.urlopen(urllib.request.Request(url, headers=headers), timeout=60) as answer:
+            return answer.status
+    except urllib.error.HTTPError as error:
+        return error.code
+    except OSError:
+        return 0
+
+
+def _address(studio):
+    head, _, token = studio.url.partition("/?token=")
+    return head, token
+
+
+def _connected(studio, token=None, origin=None):
+    head, own = _address(studio)
+    return client.connect(f"{head.replace('http', 'ws')}/ws?token={own if token is None else token}", origin=head
+        if origin is None else origin,
+                          max_size=None, open_timeout=60)
+
+
+def _ask(page, name, given=None, number=1):
+    page.send(json.dumps({"id": number, "do": name, "with": given or {}}))
+    while True:
+        message = page.recv(timeout=60)
+        if isinstance(message, str) and json.loads(message).get("id") == number:
+            return json.loads(message)
+
+
+def test_the_page_asks_for_nothing_outside(studio):
+    with urllib.request.urlopen(studio.url) as answer:
+        html, policy = answer.read().decode(), answer.headers["Content-Security-Policy"]
+    assert "default-src 'none'" in policy and "connect-src 'self'" in policy
+    assert len(html) < 1e6
+    assert 'src="http' not in html and "@import" not in html
+
+
+def test_only_this_machine_with_its_token_is_served(studio):
+    head, token = _address(studio)
+    port = head.rpartition(":")[2]
+    assert _status(f"{head}/?token={token}", Host=f"localhost:{port}") == 200
+    for url, headers in [(f"{head}/", {}), (f"{head}/?token=", {}), (f"{head}/?token={token[:-1]}", {}),
+        (f"{head}/?token={token}x", {}),
+                         (f"{head}/?token={token}", {"Host": f"evil.example:{port}"}),
+                         (f"{head}/?token={token}", {"Host": "127.0.0.1"}),
+                         (f"{head}/?token={token}", {"Origin": "https://evil.example"}),
+                         (f"{head}/take/0/scenario.toml", {})]:
+        assert _status(url, **headers) == 403, (url, headers)
+    assert _status(f"{head}/take/0/scenario.toml?token={token}") == 200
+    for path in ("/take/0/..%2f..%2fetc%2fpasswd", "/take/0/session.json", "/take/99/scenario.toml",
+        "/.plica-studio/address"):
+        assert _status(f"{head}{path}?token={token}") == 404, path
+    for wrong in [{"token": ""}, {"token": "x" * 5000}, {"origin": "https://evil.example"}, {"origin": "null"}]:
+        with pytest.raises(Exception):
+            _connected(studio, **wrong).recv(timeout=60)
+    with socket.socket() as other:  # listens on the loopback only
+        address = socket.gethostbyname(socket.gethostname())
+        if not address.startswith("127."):
+            assert other.connect_ex((address, int(port))) != 0
+
+
+def test_huge_and_malformed_messages_leave_the_session_as_it_was(studio):
+    with _connected(studio) as page:
+        before = _ask(page, "gallery")
+        for number, text in enumerate(["", "null", "[]", "{}", '{"do": 3}', '{"do": "order"}', '{"do": "__init__"}',
+            '{"do": "set"}', "[" * 100_000,
+                                       '{"do": "set", "with": {"changes": []}}', '{"do": "set", "with": {"changes": {"": {"": 1}}}}',
+                                       '{"do": "look", "with": {"slot": "x"}}', '{"do": "look", "with": {"slot": 0, "run": 1e999, "field": 0}}',
+                                       '{"do": "act", "with": {"run": 1, "at_s": NaN, "kind": [], "cells": 1}}',
+                                       '{"do": "paint", "with": {"region": "r", "ids": [1e99]}}',
+                                       '{"do": "look", "with": {"slot": 0, "run": 0, "field": "x", "shapes": 7}}'], 10):
+            page.send(text)
+            assert "ok" in _ask(page, "gallery", number=number)
+        assert _ask(page, "gallery")["ok"]["scenarios"] == before["ok"]["scenarios"]
+    with pytest.raises(Exception):
+        with _connected(studio) as page:
+            page.send("x" * 3_000_000)
+            while True:
+                page.recv(timeout=60)
+    with _connected(studio) as page:
+        page.send(b"\x00\x01")
+    with _connected(studio) as page:
+        assert "ok" in _ask(page, "gallery")
+
+
+def test_fifty_connections_do_no_harm(studio):
+    pages, refused = [], 0
+    for _ in range(50):
+        try:
+            page = _connected(studio)
+            page.recv(timeout=60)
+            pages.append(page)
+        except Exception:
+            refused += 1
+    assert refused >= 30 and pages and "ok" in _ask(pages[0], "gallery")
+    for page in pages:
+        page.close()
+    wait(lambda: not studio._server.pages)
+    with _connected(studio) as page:
+        assert "ok" in _ask(page, "gallery")
+
+
+def test_two_pages_see_one_session(studio):
+    with _connected(studio) as one, _connected(studio) as two:
+        assert "ok" in _ask(one, "set", {"changes": {"cortex.apical.tension_mN_per_m": "1.7"}})
+        while True:
+            message = two.recv(timeout=60)
+            draft = json.loads(message).get("draft") if isinstance(message, str) else None
+            if draft and draft["table"]["cortex"]["apical"]["tension_mN_per_m"] == 1.7:
+                break
+        assert "problem" in _ask(two, "set", {"changes": {"cortex.apical.tension_mN_per_m": "-2"}})
+        problem = _ask(two, "check", {"changes": {"cortex.apical.tension_mN_per_m": "much"}})["problem"]
+        assert problem["by_key"][0]["key"] == "cortex.apical.tension_mN_per_m" and "number" in problem["by_key"][0]["text"]
+
+
+def test_frames_come_over_the_connection(studio):
+    with _connected(studio) as page:
+        number = _ask(page, "start", {"until_s": 30})["ok"]["run"]
+        page.send(json.dumps({"do": "look", "with": {"slot": 0, "run": number, "field": "area-ratio", "at_s": None,
+            "known": -1, "rows": 0, "shapes": []}}))
+        heads = []
+        while len(heads) < 2:
+            message = page.recv(timeout=60)
+            if isinstance(message, bytes):
+                length = int.from_bytes(message[:4], "little")
+                heads.append((json.loads(message[4 : 4 + length]), message[4 + length :]))
+        (shape, _), (frame, body) = heads
+        assert shape["kind"] == "shape" and frame["kind"] == "frame" and frame["run"] == number
+        assert len(body) == 4 * sum(count for _, _,
+            count in frame["arrays"]) == 4 * (3 * shape["nodes"] + shape["cells"])
+
+
+def test_a_second_studio_names_the_first(studio, tmp_path):
+    with pytest.raises(plica.PlicaError, match="open studio"):
+        plica.studio(folder=tmp_path)
+    assert os.stat(tmp_path / ".plica-studio" / "address").st_mode & 0o077 == 0
+    assert Path(tmp_path / ".plica-studio").stat().st_mode & 0o077 == 0
+    assert studio.url in studio._repr_html_()

@@ -1,0 +1,294 @@
+// Forms of all tables of the scenario, made from the server's schema: a field a key, with unit, meaning and check.
+import { element } from "../dom";
+import { lastOf, words } from "../text";
+import { type Connection, type DraftState, type KeyRow, Problem, type SchemaTable, type Table,
+  type Value } from "./connection";
+import { curveOf } from "./curve";
+
+const checkAfter = 150; // ms without typing
+
+interface Place {
+  name: string; // "cortex.apical"
+  schema: SchemaTable;
+  values: Table;
+}
+
+function isTable(value: Value | undefined): value is Table {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}
+
+/** Value at a dotted key of nested tables. */
+export function valueAt(table: Table | null | undefined, key: string): Value | undefined {
+  let value: Value | undefined = table ?? undefined;
+  for (const part of key.split(".").filter((part) => part !== "")) value = isTable(value) ? value[part] : undefined;
+  return value;
+}
+
+function textOf(value: Value | undefined): string {
+  if (value === undefined || value === null) return "";
+  return Array.isArray(value) ? value.join(", ") : String(value);
+}
+
+/** Remove the marks of Markdown. */
+function plain(meaning: string): string {
+  return meaning.replace(/\[([^\]]*)\]\([^)]*\)/g, "$1").replaceAll("`", "");
+}
+
+export class Forms {
+  private schema: SchemaTable[] = [];
+  private draft: DraftState | null = null;
+  private readonly opened = new Set<string>();
+  private readonly pending = new Map<string, string | boolean>(); // refused so far, by key
+  private readonly list = element("div", { id: "tables" });
+  private readonly filter = element("input", { type: "search", id: "find-key", placeholder: "Find a key",
+    "aria-label": "Find a key" });
+
+  constructor(holder: HTMLElement, private readonly connection: Connection) {
+    holder.append(this.filter, this.adding(), this.list);
+    this.filter.addEventListener("input", () => this.applyFilter());
+  }
+
+  takeSchema(tables: SchemaTable[]): void {
+    this.schema = tables.filter(({ path }) => path !== "expect.*");
+    const kind = document.getElementById("add-kind") as HTMLSelectElement;
+    kind.replaceChildren(...this.schema.filter(({ path }) => path.endsWith(".*"))
+      .map(({ path, meaning }) => element("option", { value: path, title: plain(meaning) }, path.replace(".*", ""))));
+    if (this.draft) this.show(this.draft);
+  }
+
+  /** Make the forms again where the scenario has changed, so that a text is not lost as it is typed. */
+  show(draft: DraftState): void {
+    const isSame = this.draft?.revision === draft.revision && this.list.childElementCount > 0;
+    this.draft = draft;
+    if (this.schema.length === 0 || isSame) return;
+    const focused = (document.activeElement as HTMLElement | null)?.dataset.key;
+    this.list.replaceChildren(...this.places().map((place) => this.formOf(place)));
+    if (focused) this.list.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus();
+    this.applyFilter();
+  }
+
+  private places(): Place[] {
+    const table = this.draft?.table ?? {};
+    return this.schema.flatMap((schema) => {
+      if (!schema.path.endsWith(".*")) {
+        const values = schema.path === "" ? table : (table[schema.path] as Table | undefined) ?? {};
+        return [{ name: schema.path, schema, values }];
+      }
+      const stem = schema.path.slice(0, -2);
+      return Object.entries((table[stem] as Table | undefined) ?? {})
+        .filter(([, values]) => isTable(values))
+        .map(([name, values]) => ({ name: `${stem}.${name}`, schema, values: values as Table }));
+    }).filter(({ name, schema }) => !this.isPartOfNamed(name, schema));
+  }
+
+  // [elasticity] holds both its own keys and named tables.
+  private isPartOfNamed(name: string, schema: SchemaTable): boolean {
+    return schema.path.endsWith(".*") && this.schema.some(({ path, rows }) =>
+      path === schema.path.slice(0, -2) && rows.some(({ key }) => `${path}.${key.split(".")[0]}` === name));
+  }
+
+  private formOf({ name, schema, values }: Place): HTMLElement {
+    const base = this.draft?.base_table;
+    const details = element("details", { class: "table", "data-table": name });
+    details.open = this.opened.has(name);
+    const prefix = name === "" ? "" : `${name}.`;
+    const shape = String(valueAt(this.draft?.table, "embryo.shape") ?? "");
+    const rows = schema.rows.filter(({ key, instead_of, shapes }) =>
+      key !== "base" && key !== "format" && instead_of === "" && (shapes.length === 0 || shapes.includes(shape)));
+    const has = (row: KeyRow) => valueAt(values, row.key) !== undefined;
+    const differs = base && rows.some(({ key }) => this.differs(prefix + key));
+    details.append(element("summary", { title: plain(schema.meaning) }, name === "" ? "General" : name,
+      ...(differs ? [element("span", { class: "changed", title: `differs from ${this.draft?.base}` }, " ●")] : [])));
+    details.addEventListener("toggle", () => {
+      if (details.open) this.opened.add(name);
+      else this.opened.delete(name);
+      if (details.open && !details.dataset.filled) fill();
+    });
+    const fill = () => {
+      details.dataset.filled = "true";
+      details.append(element("p", { class: "note" }, plain(schema.meaning)));
+      details.append(...rows.filter(has).filter(({ key }) => !this.isCurve(key)).map((row) => this.field(prefix, row,
+        values)));
+      for (const inner of new Set(rows.filter(({ key }) => this.isCurve(key)).map(({ key }) => key.split(".")[0])))
+        details.append(this.curve(prefix + inner, valueAt(values, inner) as Table | undefined));
+      const rest = rows.filter((row) => !has(row) && !this.isCurve(row.key));
+      if (rest.length > 0)
+        details.append(element("details", { class: "more" }, element("summary", {}, `${rest.length} more keys`),
+          ...rest.map((row) => this.field(prefix, row, values))));
+      if (schema.path.endsWith(".*")) details.append(this.remove(name));
+    };
+    if (details.open) fill();
+    return details;
+  }
+
+  private isCurve(key: string): boolean {
+    return /^(stiffness_)?program\./.test(key);
+  }
+
+  private differs(key: string): boolean {
+    const { table, base_table: base } = this.draft!;
+    return base != null && JSON.stringify(valueAt(table, key)) !== JSON.stringify(valueAt(base, key));
+  }
+
+  private field(prefix: string, row: KeyRow, values: Table): HTMLElement {
+    const key = prefix + row.key;
+    const [name, unit] = words(row.key);
+    const input = this.input(key, row, valueAt(values, row.key));
+    const fault = element("span", { class: "fault", role: "alert" });
+    const box = element("div", { class: "field" },
+      element("label", { title: `${key}: ${plain(row.meaning)}${row.allowed ? ` Allowed: ${row.allowed}.` : ""}` },
+        element("span", { class: "name" }, lastOf(name.replaceAll(": ", ".")),
+          ...(this.draft?.base_table && this.differs(key) ? [this.reset(key)] : [])),
+        input, element("span", { class: "unit" }, unit)), fault);
+    this.listen(key, row, input, fault);
+    return box;
+  }
+
+  private input(key: string, row: KeyRow, value: Value | undefined): HTMLInputElement | HTMLSelectElement {
+    const attributes = { "data-key": key, "aria-label": key };
+    if (row.type === "true or false") {
+      const box = element("input", { type: "checkbox", ...attributes });
+      box.checked = value === true;
+      return box;
+    }
+    if (row.type === "word" && row.words.length > 0) {
+      const select = element("select", attributes,
+        ...(value === undefined ? [element("option", { value: "" }, "–")] : []),
+        ...row.words.map((word) => element("option", { value: word }, word)));
+      select.value = textOf(value);
+      return select;
+    }
+    const input = element("input", { type: "text", placeholder: row.allowed || row.type, autocomplete: "off",
+      spellcheck: "false", ...attributes });
+    input.value = String(this.pending.get(key) ?? textOf(value));
+    if (this.isRegion(row.key)) input.setAttribute("list", "region-names");
+    return input;
+  }
+
+  private isRegion(key: string): boolean {
+    return ["region", "about", "from", "neighbours_of"].includes(lastOf(key));
+  }
+
+  private listen(key: string, _row: KeyRow, input: HTMLInputElement | HTMLSelectElement, fault: HTMLElement): void {
+    const value = () => (input instanceof HTMLInputElement && input.type === "checkbox" ? input.checked : input.value);
+    const tell = (problem: unknown) => {
+      const texts = problem instanceof Problem ? (problem.byKey.length > 0 ? problem.byKey.map((one) =>
+        one.key === key || one.key === "" ? one.text : `${one.key}: ${one.text}`) : [problem.message]) : [];
+      fault.textContent = texts.join("\n");
+      input.setAttribute("aria-invalid", String(texts.length > 0));
+    };
+    let timer = 0;
+    let turn = 0;
+    input.addEventListener("input", () => {
+      if (input instanceof HTMLSelectElement || input.type === "checkbox") return;
+      clearTimeout(timer);
+      const mine = ++turn;
+      timer = window.setTimeout(() => {
+        this.connection.order("check", { changes: { [key]: value() } })
+          .then(() => mine === turn && tell(null), (problem) => mine === turn && tell(problem));
+      }, checkAfter);
+    });
+    input.addEventListener("change", () => {
+      clearTimeout(timer);
+      ++turn;
+      // What was refused before may be valid together with this.
+      this.pending.set(key, value());
+      const all = Object.fromEntries(this.pending);
+      this.connection.order("set", { changes: { [key]: value() } })
+        .catch(() => this.connection.order("set", { changes: all }))
+        .then(() => {
+          this.pending.clear();
+          tell(null);
+        }, tell);
+    });
+  }
+
+  private reset(key: string): HTMLElement {
+    const button = element("button", { type: "button", class: "reset", title: `as in ${this.draft!.base}` }, "●");
+    button.addEventListener("click", (event) => {
+      event.preventDefault();
+      void this.connection.order("set", { changes: { [key]: valueAt(this.draft!.base_table, key) ?? null } });
+    });
+    return button;
+  }
+
+  private curve(key: string, program: Table | undefined): HTMLElement {
+    const fault = element("span", { class: "fault", role: "alert" });
+    const send = (changes: object) =>
+      this.connection.order("set", { changes }).then(() => (fault.textContent = ""), (problem: Problem) =>
+        (fault.textContent = problem.message));
+    const title = lastOf(key).replace("_", " ");
+    const times = program?.time_s as number[] | undefined;
+    if (!times) {
+      const button = element("button", { type: "button" }, `Add ${title}`);
+      button.addEventListener("click", () => void send({ [key]: { time_s: [0, 300], activity: [0, 1] } }));
+      return element("div", { class: "field" }, button, fault);
+    }
+    const end = Number(valueAt(this.draft?.table, "time.end_s"));
+    const drawing = curveOf(times, program!.activity as number[], end, (time_s, activity) =>
+      void send({ [key]: { time_s, activity } }));
+    return element("div", { class: "field", "data-curve": key },
+      element("span", { class: "name" }, `${title}: activity over ${Math.round(end / 60)} min`), drawing, fault);
+  }
+
+  private remove(name: string): HTMLElement {
+    const button = element("button", { type: "button", class: "remove" }, `Remove ${name}`);
+    const fault = element("span", { class: "fault", role: "alert" });
+    button.addEventListener("click", () => {
+      this.connection.order("set", { changes: { [name]: null } }).catch((problem: Problem) =>
+        (fault.textContent = problem.message));
+    });
+    return element("div", { class: "field" }, button, fault);
+  }
+
+  // A new table: its required keys first, made when they are valid.
+  private adding(): HTMLElement {
+    const kind = element("select", { id: "add-kind", "aria-label": "Kind of table" });
+    const name = element("input", { type: "text", id: "add-name", placeholder: "name",
+      "aria-label": "Name of the table" });
+    const region = element("input", { type: "text", id: "add-region", value: "all", list: "region-names",
+      "aria-label": "Region" });
+    const add = element("button", { type: "submit", id: "add" }, "Add");
+    const fault = element("span", { class: "fault", role: "alert" });
+    const form = element("form", { id: "adding" }, kind, name, element("label", {}, "in ", region), add, fault);
+    const showRegion = () => (region.parentElement!.hidden = !this.schema.find(({ path }) =>
+      path === kind.value)?.rows.some(({ key }) => key === "region"));
+    kind.addEventListener("change", showRegion);
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      const path = `${kind.value.replace(".*", "")}.${name.value.trim()}`;
+      const schema = this.schema.find((one) => one.path === kind.value)!;
+      const table = startOf(schema, region.value);
+      this.opened.add(path);
+      this.connection.order("set", { changes: { [path]: table } }).then(
+        () => {
+          [fault.textContent, name.value] = ["", ""];
+          this.list.querySelector(`[data-table="${CSS.escape(path)}"]`)?.scrollIntoView({ block: "nearest" });
+        },
+        (problem: Problem) => (fault.textContent = problem.message));
+    });
+    return form;
+  }
+
+  private applyFilter(): void {
+    const text = this.filter.value.trim().toLowerCase();
+    for (const details of this.list.querySelectorAll<HTMLDetailsElement>(":scope > details")) {
+      const schema = this.places().find(({ name }) => name === details.dataset.table)?.schema;
+      details.hidden = text !== "" &&
+        !`${details.dataset.table} ${schema?.rows.map(({ key }) => key).join(" ")}`.toLowerCase().includes(text);
+    }
+  }
+}
+
+// Keys that a new table needs before it is valid; values that change nothing yet where there are such.
+function startOf({ path, rows }: SchemaTable, region: string): Table {
+  const table: Table = {};
+  for (const { key, required, type, words: allowed } of rows) {
+    if (key === "region") table[key] = region;
+    else if (required && !key.includes(".")) table[key] = type === "number" ? 0 : (allowed[0] ?? "");
+  }
+  if (path === "ablation.*") table.at_s = 0;
+  if (path === "division.*") table.at_s = 60;
+  if (path === "region.*") table.x_um = [-10, 10];
+  return table;
+}

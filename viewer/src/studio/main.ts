@@ -1,0 +1,455 @@
+// The studio's page: a draft at rest, its runs, and acts on them, in the view that reports have.
+import { type Chart, Chart as TimeChart, seriesCharts } from "../charts";
+import { save } from "../controls";
+import { byId, element } from "../dom";
+import { EmbryoViews } from "../embryo_view";
+import { LookControls } from "../look_controls";
+import type { Field, PageData, View } from "../page_data";
+import { RunLooks } from "../run_looks";
+import { State } from "../state";
+import { time as timeText } from "../text";
+import { followTheme } from "../theme";
+import { Connection, type DraftState, Problem, type RunsState, type Table } from "./connection";
+import { Forms } from "./forms";
+import { LiveRun, LiveTopology } from "./live_run";
+import { type Frame, type Message, rangeOf, type Shape } from "./messages";
+import { movieOf } from "./movie";
+import { Painting, type Stroke } from "./painting";
+import { type Chosen, RunsPanel } from "./runs_panel";
+import { Start } from "./start";
+import { TimeBar } from "./time_bar";
+import { ToolsBar } from "./tools_bar";
+
+const chartsApart = 700; // ms
+const mostCellsWithEdges = 5000;
+const difference: Field = {
+  name: "difference", label: "distance from the run beside, µm", unit: "", on_nodes: true, scale: "from-zero", map: "from_zero", low: 0, high: 1,
+};
+
+class Studio {
+  private readonly token = new URLSearchParams(location.search).get("token") ?? "";
+  private readonly page: PageData;
+  private readonly known: Field[];
+  private readonly runs = [new LiveRun(0), new LiveRun(1)];
+  private readonly state: State;
+  private readonly looks: RunLooks;
+  private readonly chosen: Chosen = { run: 0, beside: null };
+  private readonly shapes = new Map<string, LiveTopology>();
+  private readonly wants = [false, false]; // slots to be asked for at the next refresh
+  private readonly frameShown = [-1, -1]; // index of the frame shown in each slot
+  private at: number | null = null;
+  private views: EmbryoViews | null = null;
+  private selection = new Set<number>();
+  private charts: Chart[] = [];
+  private chartsAt = 0;
+  private chartRows = "";
+  private readonly connection: Connection;
+  private readonly forms: Forms;
+  private readonly panel: RunsPanel;
+  private readonly time: TimeBar;
+  private tools!: ToolsBar;
+  private readonly start: Start;
+  private hasNoPicture = false;
+  private lastField = "region";
+
+  constructor() {
+    const { fields, maps } = JSON.parse(byId("data").textContent!) as { fields: Field[]; maps: Record<string,
+      string[]> };
+    this.known = fields;
+    this.page = {
+      format: 1, made_by: "", fields: [...fields], maps: { ...maps }, views: [], view_cut_um: 0.01, varied: [], outcomes: null,
+      runs: this.runs.map(({ data }) => data),
+    };
+    const none: View = { name: "", title: "", label: "", sight: [0, 1, 0], up: [0, 0, 1], cut_axis: null };
+    this.state = new State({
+      time: Infinity, playing: false, speed: 1, field: fields.find(({ name }) =>
+        name === "region") ?? fields[0], view: none, cut: null,
+      edges: true, shell: true, marks: false, picked: null, shown: new Set([0]), order: [0,
+        1], pointed: null, colourBy: "",
+    });
+    this.looks = new RunLooks(this.runs, this.page, this.state);
+    this.connection = new Connection(this.token, {
+      schema: (tables) => this.forms.takeSchema(tables),
+      draft: (draft) => this.takeDraft(draft),
+      runs: (runs) => this.takeRuns(runs),
+      shape: (message) => this.takeShape(message),
+      frame: (message) => this.takeFrame(message),
+      connected: (on) => this.showConnected(on),
+      edited: () => this.chosen.run !== 0 && this.choose({ run: 0 }),
+    });
+    this.forms = new Forms(byId("forms"), this.connection);
+    this.panel = new RunsPanel(byId("runs"), this.chosen, this.connection, this.token, (chosen) => this.choose(chosen),
+      (problem) => this.tell(problem));
+    this.time = new TimeBar(byId("timeline"), {
+      run: (until) => this.go(until), pause: () => void this.order("pause", { run: this.chosen.run }), step: () =>
+        void this.step(),
+      lookAt: (time) => {
+        this.at = time;
+        this.ask();
+      },
+    });
+    this.start = new Start(this.connection);
+    this.listen();
+    this.state.on(["field"], () => this.fieldChanged());
+    const tick = (now: number) => {
+      this.time.tick(now);
+      this.askNow();
+      this.views?.draw();
+      if (now - this.chartsAt > chartsApart) this.updateCharts(now);
+      requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  }
+
+  // Orders
+
+  private async order(name: string, given: object = {}): Promise<Table | null> {
+    try {
+      const answer = await this.connection.order(name, given);
+      this.tell(null);
+      return answer;
+    } catch (problem) {
+      this.tell(problem);
+      return null;
+    }
+  }
+
+  private tell(problem: unknown): void {
+    const notice = byId("problem");
+    notice.hidden = problem === null;
+    notice.textContent = problem instanceof Problem ? problem.message : problem === null ? "" : String(problem);
+  }
+
+  private async go(untilS: number | null): Promise<void> {
+    if (this.chosen.run !== 0) return void this.order("go", { run: this.chosen.run, until_s: untilS });
+    const made = await this.order("start", { until_s: untilS });
+    if (made) this.choose({ run: made.run as number });
+  }
+
+  private async step(): Promise<void> {
+    if (this.chosen.run !== 0) return void this.order("step", { run: this.chosen.run });
+    const made = await this.order("start", { until_s: 0 });
+    if (!made) return;
+    this.choose({ run: made.run as number });
+    await this.order("step", { run: made.run });
+  }
+
+  private async act(kind: string, strength: number, name = ""): Promise<void> {
+    const run = this.runs[0];
+    const cells = [...this.selection].map((cell) => run.shown!.cellIds[cell]);
+    const beside = this.chosen.run;
+    const made = await this.order("act", { run: this.chosen.run, at_s: run.time, kind, cells, strength, name });
+    if (made) this.choose({ run: made.run as number, beside });
+  }
+
+  // What the server sends
+
+  private takeDraft(draft: DraftState): void {
+    const title = String(draft.table?.title ?? "");
+    byId("title").textContent = draft.table ? `${title || draft.base || "scenario"}` : "no scenario is open";
+    (byId("undo") as HTMLButtonElement).disabled = !draft.undo;
+    (byId("redo") as HTMLButtonElement).disabled = !draft.redo;
+    byId("advice").replaceChildren(...[draft.problem, ...draft.advice].filter((line) => line !== "").map((line) =>
+      element("p", {}, line)));
+    byId("text").textContent = draft.text ?? "";
+    byId("take-scenario").setAttribute("href", `/take/0/scenario.toml?token=${encodeURIComponent(this.token)}`);
+    byId("take-script").setAttribute("href", `/take/0/run.py?token=${encodeURIComponent(this.token)}`);
+    this.forms.show(draft);
+    if (!draft.table) void this.start.open();
+    this.ask();
+  }
+
+  private takeRuns(runs: RunsState): void {
+    this.panel.take(runs);
+    this.nameRuns();
+    this.showTime();
+  }
+
+  private takeShape({ head, arrays }: Message<Shape>): void {
+    if (head.shape.startsWith("0/")) for (const name of this.shapes.keys()) if (name.startsWith("0/")) this.shapes.delete(name);
+    this.shapes.set(head.shape, new LiveTopology(head, arrays));
+  }
+
+  private takeFrame(message: Message<Frame>): void {
+    const { head } = message;
+    const topology = this.shapes.get(head.shape);
+    if (!topology || head.run !== this.wanted(head.slot)) return;
+    const run = this.runs[head.slot];
+    const before = run.shown;
+    run.take(topology, message);
+    this.frameShown[head.slot] = head.index;
+    this.wants[head.slot] = true;
+    if (before !== topology && head.slot === 0) this.takeTopology(before, topology);
+    if (this.runs[0].shown) this.runs[0].shown.other = this.chosen.beside === null ? null : this.runs[1].shown;
+    if (this.runs[1].shown) this.runs[1].shown.other = this.runs[0].shown;
+    if (!this.views) this.makeViews();
+    else if (before === null) this.views.remeasure();
+    this.updateRange(head);
+    this.markSelection();
+    this.showTime();
+    if (head.slot === 0 && this.chosen.beside !== null) this.wants[1] = true;
+    document.body.dataset.frame = `${head.run}/${head.index}`;
+  }
+
+  private takeTopology(before: LiveTopology | null, topology: LiveTopology): void {
+    const { shape } = topology;
+    this.tools?.showRegions(topology.regionNames);
+    const own = Object.entries(shape.own_fields).map(([name, range]): Field => (
+      { name, label: name, unit: "", on_nodes: false, scale: "from-zero", map: "from_zero", ...rangeOf(range) }));
+    this.page.fields = [...this.known, ...own, difference];
+    if (before?.cells !== topology.cells) this.selection = new Set();
+    if (before && hasSameSize(before, topology)) return; // at most, cells have divided
+    this.page.views = Object.entries(shape.views).map(([name, view]) => ({ name, title: name, label: "", ...view }));
+    this.page.view_cut_um = 0.01;
+    this.state.set({ view: this.page.views[0], cut: null, edges: topology.cells <= mostCellsWithEdges });
+    this.views?.remeasure();
+    byId("controls").replaceChildren(...new LookControls([this.runs[0]], this.page, this.state, () =>
+      this.views?.sight() ?? [1, 1, 1]).all());
+  }
+
+  private makeViews(): void {
+    if (this.hasNoPicture) return;
+    try {
+      this.views = new EmbryoViews(this.runs, this.page, this.state, this.looks, byId("canvases"),
+        byId("legend") as HTMLCanvasElement);
+    } catch (error) {
+      console.info("no picture:", error);
+      this.hasNoPicture = true;
+      this.tell("The tissue cannot be drawn, since this browser has no WebGL. Forms, runs and plots work.");
+      return;
+    }
+    const paintings = this.runs.map((run) => new Painting(this.views!.viewOf(run),
+      (stroke) => this.takeStroke(stroke)));
+    this.tools = new ToolsBar(byId("tools"), byId("acts-holder"), paintings, {
+      clear: () => this.select(new Set()),
+      paintInto: (region) => this.select(new Set(region === "" ? [] : this.runs[0].shown!.membersOf(region))),
+      makeRegion: (name) => void this.paint(name),
+      act: (kind, strength) => void this.act(kind, strength),
+      end: (name) => void this.act("end", 0, name),
+    });
+    this.tools.showRegions(this.runs[0].shown!.regionNames);
+    void this.views.makeReady();
+    this.views.remeasure();
+    this.views.draw();
+    performance.mark("first-picture");
+    document.body.dataset.ready = "true";
+  }
+
+  private showConnected(on: boolean): void {
+    byId("connection").hidden = on;
+    if (!on) return;
+    this.shapes.clear();
+    this.frameShown.fill(-1);
+    this.runs.forEach((run) => run.forgetRows());
+    this.ask();
+  }
+
+  // What is looked at
+
+  private choose(chosen: Partial<Chosen>): void {
+    const before = { ...this.chosen };
+    Object.assign(this.chosen, chosen);
+    if (this.chosen.beside === this.chosen.run || this.chosen.run === 0) this.chosen.beside = null;
+    if (before.run !== this.chosen.run) {
+      this.at = null;
+      this.time.follow();
+      this.runs[0].forgetRows();
+      this.frameShown[0] = -1;
+    }
+    if (before.beside !== this.chosen.beside) {
+      this.runs[1].forgetRows();
+      this.runs[1].shown = null;
+      this.frameShown[1] = -1;
+    }
+    if (before.run === 0 && this.chosen.run !== 0 && this.state.now.field.name === "region") this.colour("area-ratio");
+    if (this.chosen.run === 0 && before.run !== 0) this.colour("region");
+    this.state.set({ shown: new Set(this.chosen.beside === null ? [0] : [0, 1]) });
+    this.nameRuns();
+    this.panel.refresh();
+    this.showTime();
+    this.ask();
+  }
+
+  private nameRuns(): void {
+    for (const [slot, run] of this.runs.entries()) {
+      const label = this.panel.run(this.wanted(slot) ?? 0)?.title ?? "At rest";
+      if (label === run.label) continue;
+      run.label = label;
+      this.views?.refresh();
+    }
+  }
+
+  private wanted(slot: number): number | null {
+    return slot === 0 ? this.chosen.run : this.chosen.beside;
+  }
+
+  private ask(): void {
+    this.wants.fill(true);
+  }
+
+  // One request a slot and refresh of the screen, so that frames come no faster than they are drawn.
+  private askNow(): void {
+    for (const slot of [0, 1]) {
+      const run = this.wanted(slot);
+      if (!this.wants[slot] || run === null) continue;
+      this.wants[slot] = false;
+      const at = slot === 1 ? (this.runs[0].shown ? this.runs[0].time : null) : this.at;
+      this.connection.look({
+        slot, run, field: this.state.now.field.name, at_s: at, known: this.frameShown[slot],
+        rows: this.runs[slot].series.rows.length, shapes: [...this.shapes.keys()],
+      });
+    }
+  }
+
+  private colour(name: string): void {
+    const select = document.getElementById("field") as HTMLSelectElement | null;
+    if (select) select.value = name;
+    this.state.set({ field: this.page.fields.find((field) => field.name === name)! });
+  }
+
+  private fieldChanged(): void {
+    if (this.state.now.field.name === this.lastField) return;
+    this.lastField = this.state.now.field.name;
+    this.frameShown.fill(-1);
+    this.ask();
+  }
+
+  private updateRange(head: Frame): void {
+    const field = this.state.now.field;
+    let { low, high } = field;
+    if (field.name === difference.name) high = niceAbove(this.runs[0].shown?.largestDifference ?? 1);
+    else if (head.field === field.name && head.range && field.scale !== "steps") ({ low, high } = rangeOf(head.range));
+    // A new object, so that everything that shows the field is drawn again.
+    this.state.set({ field: { ...field, low, high } });
+  }
+
+  // Selection and painting
+
+  private takeStroke(stroke: Stroke): void {
+    const cells = new Set(stroke.cells);
+    if (this.tools.mirror.checked) for (const cell of stroke.cells) cells.add(this.runs[0].shown!.mirrorOf(cell));
+    const next = new Set(this.selection);
+    for (const cell of cells)
+      if (stroke.erases) next.delete(cell);
+      else next.add(cell);
+    this.select(next);
+    if (stroke.done && this.tools.target.value !== "") void this.paint(this.tools.target.value);
+  }
+
+  private select(cells: Set<number>): void {
+    this.selection = cells;
+    this.tools.showCount(cells.size);
+    this.markSelection();
+    this.views!.refresh();
+  }
+
+  private markSelection(): void {
+    const marked = [...this.selection];
+    for (const run of this.runs) run.marked = run.shown && run.shown.cells === this.runs[0].shown?.cells ? marked : [];
+  }
+
+  private async paint(region: string): Promise<void> {
+    if (this.chosen.run !== 0) return this.tell("Regions belong to the tissue at rest; choose At rest under Runs, or act on the selected cells.");
+    const begun = performance.now();
+    const done = await this.order("paint", { region, ids: [...this.selection] });
+    if (!done) return;
+    const run = this.runs[0];
+    run.shown!.setRegion(region, this.selection);
+    run.data.coloured_regions = run.shown!.colouredRegions;
+    this.views!.refresh();
+    document.body.dataset.strokeMs = String(Math.round(performance.now() - begun));
+    if (this.tools.target.value === region) return;
+    this.tools.showRegions(run.shown!.regionNames);
+    this.tools.target.value = region;
+  }
+
+  // The rest of the page
+
+  private showTime(): void {
+    const run = this.panel.run(this.chosen.run);
+    const shown = this.chosen.run === 0 ? 0 : this.runs[0].time;
+    this.time.show(run, shown);
+    this.tools?.showActs(run ? timeText(Number(shown.toPrecision(4))) : null, run?.lasting ?? []);
+    const failed = byId("failure");
+    failed.hidden = run?.status !== "failed";
+    if (run?.status !== "failed") return;
+    failed.replaceChildren(element("p", {}, element("strong", {},
+      `Run ${run.number} failed at ${timeText(run.time_s)}: `), run.failure));
+    if (run.failed_cell === null) return;
+    const cell = run.failed_cell;
+    const show = element("button", { type: "button", "data-cell": String(cell) }, `Show cell ${cell}`);
+    show.addEventListener("click", () => void this.views?.lookAtCell(this.runs[0], cell));
+    failed.append(show);
+  }
+
+  private updateCharts(now: number): void {
+    const runs = this.chosen.beside === null ? [this.runs[0]] : this.runs;
+    const rows = runs.map(({ series, label }) => `${label} ${series.rows.length}`).join();
+    if (rows === this.chartRows || document.hidden) return;
+    this.chartRows = rows;
+    this.chartsAt = now;
+    for (const chart of this.charts) chart.destroy();
+    this.charts = this.chosen.run === 0 ? [] : seriesCharts(runs.filter(({ series }) => series.rows.length > 1),
+      this.looks)
+      .map((content) => new TimeChart(content, this.state));
+    byId("plots").replaceChildren(...this.charts.map(({ box }) => box));
+  }
+
+  private listen(): void {
+    const on = (id: string, act: () => void) => byId(id).addEventListener("click", act);
+    on("open", () => void this.start.open());
+    on("undo", () => void this.order("undo"));
+    on("redo", () => void this.order("redo"));
+    on("save-picture", async () => this.views && save("plica.png", await this.views.picture()));
+    on("save-movie", () => void this.saveMovie());
+    document.addEventListener("keydown", (event) => this.key(event));
+    followTheme(() => {
+      this.views?.refresh();
+      this.chartRows = "";
+    });
+  }
+
+  private async saveMovie(): Promise<void> {
+    const run = this.panel.run(this.chosen.run);
+    if (!run || !this.views) return this.tell("A movie shows a run; choose one under Runs.");
+    byId("save-movie").textContent = "Recording…";
+    try {
+      this.time.play();
+      const { name, content } = await movieOf(byId("canvases"), () => this.time.isPlaying);
+      save(name, content);
+    } catch (error) {
+      this.tell(`The movie was not saved: ${error instanceof Error ? error.message : error}`);
+    } finally {
+      byId("save-movie").textContent = "Movie";
+    }
+  }
+
+  private key(event: KeyboardEvent): void {
+    const target = event.target as HTMLElement;
+    if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z" &&
+      !/^(INPUT|TEXTAREA)$/.test(target.tagName)) {
+      event.preventDefault();
+      return void this.order(event.shiftKey ? "redo" : "undo");
+    }
+    const isField = /^(INPUT|SELECT|TEXTAREA)$/.test(target.tagName) && (target as HTMLInputElement).type !== "radio";
+    if (event.ctrlKey || event.metaKey || event.altKey || isField || document.querySelector("dialog[open]")) return;
+    if (event.key === " " && /^(BUTTON|SUMMARY)$/.test(target.tagName)) return;
+    if (this.time.key(event) || this.tools?.key(event.key)) event.preventDefault();
+    const view = this.page.views[Number(event.key) - 1];
+    if (view) byId(`view-${view.name}`).click();
+  }
+}
+
+function hasSameSize(a: LiveTopology, b: LiveTopology): boolean {
+  const [ends, others] = [a, b].map(({ shape }) => [...shape.box.low, ...shape.box.high]);
+  const size = Math.max(...ends) - Math.min(...ends);
+  return ends.every((end, i) => Math.abs(end - others[i]) < 0.05 * size);
+}
+
+function niceAbove(value: number): number {
+  if (!(value > 0)) return 1;
+  const power = 10 ** Math.floor(Math.log10(value));
+  return [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= value)!;
+}
+
+new Studio();

@@ -1,0 +1,230 @@
+// plica studio in a real browser: what a person does with it, and random acts. STUDIO_PYTHON names the Python that has
+// plica.studio; PLICA the program that repeats what is taken away. Any console error, any request elsewhere, fails the test.
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { isFirefox, launch } from "./browser.mjs";
+
+const python = process.env.STUDIO_PYTHON;
+const plica = process.env.PLICA ?? "plica";
+const monkeyActs = Number(process.env.STUDIO_ACTS ?? 60);
+const patience = 300_000; // ms, on a busy machine
+const options = { skip: python ? false : "STUDIO_PYTHON is not set" };
+const folder = mkdtempSync(join(tmpdir(), "plica-studio-"));
+let server;
+let browser;
+let url;
+
+async function serve() {
+  server = spawn(python, ["-m", "plica.studio", folder, "--no-browser", "--threads", "1"],
+    { stdio: ["ignore", "pipe", "inherit"] });
+  url = await new Promise((found, fail) => {
+    let text = "";
+    server.stdout.on("data", (data) => {
+      text += data;
+      const address = /http\S+/.exec(text);
+      if (address) found(address[0]);
+    });
+    server.on("exit", (status) => fail(new Error(`plica.studio ended with ${status}`)));
+  });
+}
+
+async function stop(signal) {
+  const ended = new Promise((done) => server.once("exit", done));
+  server.kill(signal);
+  await ended;
+}
+
+before(async () => {
+  if (!python) return;
+  writeFileSync(join(folder, "short.toml"),
+    'base = "furrow-slice"\ntitle = "A short slice"\n[time]\nend_s = 240\n[output]\nframe_every_s = 15\n');
+  await serve();
+  browser = await launch();
+});
+
+after(async () => {
+  await browser?.close();
+  if (server) await stop("SIGINT");
+  rmSync(folder, { recursive: true, force: true });
+});
+
+async function open({ dark = false } = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, colorScheme: dark ? "dark"
+    : "light", acceptDownloads: true });
+  const page = await context.newPage();
+  page.setDefaultTimeout(patience);
+  const wrong = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && wrong.push(message.text()));
+  page.on("pageerror", (error) => wrong.push(String(error)));
+  page.on("request", (request) => new URL(request.url()).host !== new URL(url).host &&
+    !/^(data|blob):/.test(request.url()) && wrong.push(request.url()));
+  await page.goto(url);
+  const done = async (allowed = /$^/) => {
+    await context.close();
+    assert.deepEqual(wrong.filter((text) => !/GPU stall|swiftshader|GroupMarkerNotSet/i.test(text) &&
+      !allowed.test(text)), []);
+  };
+  return { page, done };
+}
+
+const shownRun = (page) => page.evaluate(() => Number(document.querySelector("input[name=run]:checked").value));
+const status = (page, run) => page.locator(`li[data-run="${run}"]`).getAttribute("data-status");
+const ended = (page, run) => page.waitForFunction((run) => ["end_time",
+  "equilibrium"].includes(document.querySelector(`li[data-run="${run}"]`)?.dataset.status), run);
+
+// The last row of series.csv without wall times.
+function lastRow(file) {
+  const [head, ...lines] = readFileSync(file, "utf8").trim().split("\n");
+  const names = head.split(",");
+  return Object.fromEntries(lines.at(-1).split(",").map((text, i) => [names[i], text]).filter(([name]) =>
+    !name.startsWith("wall")));
+}
+
+async function drag(page, from, to) {
+  const box = await page.locator(".picture").first().boundingBox();
+  const at = ([x, y]) => [box.x + x * box.width, box.y + y * box.height];
+  await page.mouse.move(...at(from));
+  await page.mouse.down();
+  await page.mouse.move(...at(to), { steps: 6 });
+  await page.mouse.up();
+}
+
+// A slice's cross-section fills the picture: its lower part is the ventral side.
+async function paintBelow(page) {
+  await page.click("#view-cross-section");
+  await page.keyboard.press("b");
+  await page.locator("#brush-size").evaluate((slider) => {
+    slider.value = "40";
+    slider.dispatchEvent(new Event("input"));
+  });
+  for (let x = 0.3; x < 0.7; x += 0.05) {
+    await drag(page, [x, 0.62], [x + 0.05, 0.98]);
+    if (Number((await page.textContent("#selected-count")).split(" ")[0]) > 0) break;
+  }
+  assert.ok(Number((await page.textContent("#selected-count")).split(" ")[0]) > 0, "the brush selects cells");
+}
+
+test("open, paint, set, run, cut, compare, take away, repeat", options, async () => {
+  const { page, done } = await open();
+  // A new folder begins with the choice of a scenario.
+  await page.waitForSelector("dialog[open] .card");
+  await page.click('.file[data-source="short.toml"]');
+  await page.waitForSelector("body[data-ready]");
+  await page.waitForFunction(() => document.querySelector("#title").textContent === "A short slice");
+
+  await paintBelow(page);
+  await page.fill("#new-region", "spot");
+  await page.click("#make-region");
+  await page.waitForSelector('[data-table="region.spot"]', { state: "attached" });
+  await page.click("#undo");
+  await page.waitForSelector('[data-table="region.spot"]', { state: "detached" });
+  await page.click("#redo");
+  await page.waitForSelector('[data-table="region.spot"]', { state: "attached" });
+
+  // A wrong value is refused at its field as it is typed, a right one taken.
+  await page.click('[data-table="cortex.apical"] > summary');
+  const tension = '[data-key="cortex.apical.tension_mN_per_m"]';
+  await page.fill(tension, "-3");
+  await page.waitForSelector(`${tension}[aria-invalid="true"]`);
+  assert.match(await page.textContent(`.field:has(${tension}) .fault`), />= 0/);
+  await page.fill(tension, "1.6");
+  await page.press(tension, "Enter");
+  await page.waitForFunction(() => document.querySelector("#text").textContent.includes("tension_mN_per_m = 1.6"));
+  assert.match(await page.textContent("#text"), /base = "furrow-slice"/);
+
+  await page.fill("#until", "1");
+  await page.click("#go-to");
+  await page.waitForFunction(() => document.querySelector('li[data-run="1"]')?.dataset.status === "paused");
+  assert.equal(await shownRun(page), 1);
+  await page.waitForFunction(() => /^[1-9]/.test(document.querySelector("#time-text").textContent) &&
+    document.querySelector("#plots canvas"));
+
+  await page.click("#clear-selection");
+  await paintBelow(page);
+  await page.click("#act-cut");
+  await page.waitForSelector('li[data-run="2"]');
+  await page.waitForFunction(() => document.querySelectorAll("#canvases .view:not([hidden])").length === 2);
+  assert.equal(await shownRun(page), 2);
+  await page.waitForFunction(() => document.querySelector('li[data-run="2"]').dataset.status === "paused");
+  await page.click("#go");
+  await ended(page, 2);
+  await page.selectOption("#field", "difference");
+
+  // Back in time, and darkness from there on.
+  await page.locator("#time").evaluate((slider) => {
+    slider.value = "100";
+    slider.dispatchEvent(new Event("input"));
+  });
+  await page.waitForFunction(() => Math.abs(parseFloat(document.querySelector("#time-text").textContent) - 100) < 16);
+  await page.fill("#dark-strength", "0.2");
+  await page.click("#act-darken");
+  await page.waitForSelector('li[data-run="3"]');
+  await page.waitForFunction(() => document.querySelector('li[data-run="3"]').dataset.status === "paused");
+  await page.click("#go");
+  await ended(page, 3);
+
+  // What is taken away repeats the run, digit by digit.
+  const text = await page.evaluate(async () =>
+    (await fetch(document.querySelector('li[data-run="3"] a[download="scenario.toml"]').href)).text());
+  writeFileSync(join(folder, "taken.toml"), text);
+  assert.match(text, /\[ablation\.cut-1\]/);
+  assert.match(text, /remaining = 0\.2/);
+  execFileSync(plica, ["run", join(folder, "taken.toml"), "--out", join(folder, "taken"), "--quiet"]);
+  assert.deepEqual(lastRow(join(folder, ".plica-studio/run-0003/results/series.csv")),
+    lastRow(join(folder, "taken/series.csv")));
+  await done();
+});
+
+test("the server is killed and started again: the page goes on", options, async () => {
+  const { page, done } = await open({ dark: true });
+  await page.waitForSelector("body[data-ready]");
+  await page.click("#show-0");
+  await page.click("#go");
+  await page.waitForFunction(() => document.querySelector("input[name=run]:checked").value !== "0");
+  const run = await shownRun(page);
+  await stop("SIGKILL");
+  await page.waitForSelector("#connection:not([hidden])");
+  await serve();
+  await page.waitForSelector("#connection", { state: "hidden" });
+  await page.waitForFunction((run) => document.querySelector(`li[data-run="${run}"]`), run);
+  if (!["end_time", "equilibrium"].includes(await status(page, run))) await page.click("#go");
+  await ended(page, run);
+  await done(/WebSocket|ERR_|can.t establish|interrupted/); // the browser's own remark on a lost connection
+});
+
+test(`${monkeyActs} random acts leave no error`, options, async () => {
+  const { page, done } = await open();
+  await page.waitForSelector("body[data-ready]");
+  let seed = 7;
+  const random = (count) => {
+    seed = (seed * 1103515245 + 12345) % 2147483648;
+    return Math.floor((seed / 2147483648) * count);
+  };
+  page.on("dialog", (dialog) => dialog.dismiss());
+  const acts = [
+    ...["b", "l", "v", " ", "s", ",", ".", "Home", "End", "1", "2", "3"].map((key) => () =>
+      page.keyboard.press(key === " " ? "Space" : key)),
+    () => drag(page, [Math.random(), Math.random()], [Math.random(), Math.random()]),
+    () => drag(page, [0.3, 0.5], [0.7, 0.9]),
+    ...["undo", "redo", "act-cut", "act-darken", "go", "step", "replay", "clear-selection", "erase", "mirror", "theme",
+      "make-region"].map((id) => () => page.locator(`#${id}`).click({ timeout: 300 }).catch(() => {})),
+    () => page.locator("input[name=run]").nth(random(4)).click({ timeout: 300 }).catch(() => {}),
+    () => page.locator("[id^=beside-]").nth(random(3)).click({ timeout: 300 }).catch(() => {}),
+    () => page.locator("[id^=remove-]").last().click({ timeout: 300 }).catch(() => {}),
+    () => page.locator("#tables > details > summary").nth(random(12)).click({ timeout: 300 }).catch(() => {}),
+    () => page.locator("#tables input[type=text]:visible").nth(random(6)).fill(["-1", "x", "0.5", "",
+      "[1, 2]"][random(5)], { timeout: 300 }).catch(() => {}),
+    () => page.locator("#field").selectOption({ index: random(8) }),
+  ];
+  for (let i = 0; i < monkeyActs; ++i) await acts[random(acts.length)]();
+  // The session still works, and its scenario is valid.
+  const text = await page.evaluate(async () => (await fetch(document.querySelector("#take-scenario").href)).text());
+  writeFileSync(join(folder, "monkey.toml"), text);
+  execFileSync(plica, ["check", join(folder, "monkey.toml")]);
+  assert.ok(existsSync(join(folder, ".plica-studio/session.json")));
+  await done();
+});
