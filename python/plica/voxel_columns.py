@@ -224,7 +224,7 @@ def _is_turned(corners: Floats, middles: Floats) -> bool:
 
 
 def ring_of(arcs: list[tuple[int, int, int]]) -> list[int]:
-    """Return the longest ring of corners along edges (corner, corner, edge), as edges in order with the corner before each."""
+    """Return the longest ring of corners along edges (corner, corner, edge)."""
     beside: dict[int, list[tuple[int, int]]] = {}
     for one, other, arc in arcs:
         beside.setdefault(one, []).append((other, arc))
