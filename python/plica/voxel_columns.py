@@ -14,7 +14,7 @@ from .voxel_surfaces import RIM, Faces, Integers, Meetings, steps_of
 FIT_RADIUS = 0.3     # of the width of a cell: planes are fitted to faces up to this far from a corner
 FARTHEST_FIT = 2.5   # voxels between a corner and the mean of its voxels; farther, the fit is wrong
 THIN_FIT = 0.15      # of the radius: narrower walls count less
-LEAST_FAN = 0.03     # of the middle height, that a part of a polygon about its middle keeps
+LEAST_FAN = 0.03     # of a usual part of a polygon about its middle, at the middle height
 MOST_EVENINGS = 30
 SETTLING = 0.4      # weight of corners' moves beside the gaps between polygons and labels
 CHUNK = 3_000_000    # voxels about corners that are read at once
@@ -210,18 +210,21 @@ def evened(places: Floats, middles: Floats, rings: dict[int, list[int]]) -> tupl
 
 
 def _is_turned(corners: Floats, middles: Floats) -> bool:
-    """Return whether a part of a polygon, about its middle, is turned over or nearly so beside the one of the middle height."""
+    """Return whether a part of a polygon, about its middle, is turned over, or all nearly has no area beside that of the middle height.
+
+    Parts at short edges may be turned a little: the edges are lengthened when cells are made.
+    """
     fans = []
     for polygon in (corners, middles):
         spokes = polygon - polygon.mean(axis=0)
         fans.append(np.cross(spokes, np.roll(spokes, -1, axis=0)))
     normal = fans[1].sum(axis=0)
     areas, usual = fans[0] @ normal, float(normal @ normal) / len(middles)
-    return bool(areas.min() < LEAST_FAN * usual)
+    return bool(areas.min() < -LEAST_FAN * usual or areas.mean() < LEAST_FAN * usual)
 
 
 def ring_of(arcs: list[tuple[int, int, int]]) -> list[int]:
-    """Return the longest ring of corners along edges (corner, corner, edge), as edges in order with the corner before each."""
+    """Return the longest ring of corners along edges (corner, corner, edge)."""
     beside: dict[int, list[tuple[int, int]]] = {}
     for one, other, arc in arcs:
         beside.setdefault(one, []).append((other, arc))

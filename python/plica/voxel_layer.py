@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from .errors import needed
 from .voxel_columns import counterparts, evened, extended, fitted_corners, parted_meetings, ring_of, settled
 from .voxel_sides import FIRST, SECOND, Floats, Halfway, Sides
-from .voxel_surfaces import RIM, Integers, Meetings, face_places, meetings_of, places_of, steps_of
+from .voxel_surfaces import RIM, Meetings, face_places, meetings_of, places_of, steps_of
 
 BEND = 0.1    # of the width of a cell: free outlines are followed to within this distance
 

@@ -1,7 +1,7 @@
 """Repair of volumes of labels: gaps between cells, pieces, stray voxels, holes."""
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Optional
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
