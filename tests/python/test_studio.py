@@ -296,6 +296,23 @@ def test_a_killed_server_loses_nothing_but_the_step_under_way(tmp_path):
     session.close()
 
 
+def test_a_run_that_ended_unnoted_is_over_with_all_its_frames(session, tmp_path):
+    """The server was killed between the end of the run and the note of it."""
+    number = session.order("start", {})["run"]
+    wait(lambda: session.runs[number].is_over)
+    session.close()
+    times = [frame.time_s for frame in session.runs[number].file.frames]
+    file = tmp_path / ".plica-studio" / "session.json"
+    file.write_text(file.read_text().replace('"end_time"', '"paused"'))
+    again = Session(tmp_path, lambda: None, threads=1)
+    run = again.runs[number]
+    assert run.status == "paused"
+    again.order("go", {"run": number})
+    wait(lambda: run.is_over)
+    assert run.status == "end_time" and [frame.time_s for frame in run.file.frames] == times
+    again.close()
+
+
 def test_half_a_frame_is_left_out(tmp_path):
     file = FrameFile(tmp_path / "frames.bin")
     values = {name: np.full(4, 2, "f4") for name in ("displacement", "speed")}

@@ -134,8 +134,8 @@ class StudioRun:
                 self._show(sim, force=True)
                 sim._core.end_record()
                 return self._end("failed", error.reason, error.cell)
+        self._show(sim, force=True)
         if sim._core.is_recording:
-            self._show(sim, force=True)
             sim._core.end_record()
         self._end(sim.status, "", None)
 
@@ -170,6 +170,8 @@ class StudioRun:
             self.from_s = sim.time_s
             self._take_over_rows()
         self.notes += sim._core.begin_record(str(self.results), "resume" if has_begun else "overwrite")
+        if not sim._core.is_recording:  # it ended, but the server was killed before it could note this
+            sim = self._loaded(self.results / "checkpoint.h5")
         self.file.forget_after(sim.time_s)
         self.rows = [row for row in self.rows if (row[0] or 0.0) <= sim.time_s + INSTANT_S]
         if not self.rows:
@@ -191,15 +193,19 @@ class StudioRun:
                 if bound_s > shared_s + 4 * every_s:  # certainly too late
                     continue
                 try:
-                    core = _core.Simulation(self.scenario._ready, self.threads or 0, path.read_bytes())
+                    sim = self._loaded(path)
                 except FileError:
                     return None  # another law, say: its memory does not fit
-                if core.time_s <= shared_s + INSTANT_S:
-                    sim = object.__new__(Simulation)
-                    sim._begin(self.scenario, core)
+                if sim.time_s <= shared_s + INSTANT_S:
                     return sim
             run, origin = origin, origin.parent
         return None
+
+    def _loaded(self, checkpoint: Path) -> Simulation:
+        """Return this scenario's simulation in the state of a checkpoint, which may be of another scenario."""
+        sim = object.__new__(Simulation)
+        sim._begin(self.scenario, _core.Simulation(self.scenario._ready, self.threads or 0, checkpoint.read_bytes()))
+        return sim
 
     def _take_over_rows(self) -> None:
         if self.parent is not None and not self.rows and self.from_s > 0:
