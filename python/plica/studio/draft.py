@@ -2,9 +2,9 @@
 from __future__ import annotations
 
 import copy
+import os
 import tomllib
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Optional
 
 from .. import _core
@@ -102,7 +102,7 @@ class Draft:
         self.history, self.place = [table], 0
 
     @classmethod
-    def of(cls, source: str | Path | Scenario) -> Draft:
+    def of(cls, source: str | os.PathLike[str] | Scenario) -> Draft:
         """Read a built-in scenario, a file or a Scenario. What it expects of its results is left out: it is to be changed."""
         scenario = source if isinstance(source, Scenario) else Scenario(source)
         scenario._require_file("plica.studio")
