@@ -12,6 +12,7 @@
 #include "core/files.hpp"
 #include "core/threads.hpp"
 #include "core/words.hpp"
+#include "record/time_left.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
 #include "simulation/simulation.hpp"
@@ -59,30 +60,27 @@ void check_study(const StudyInput& input, int threads) {
              bytes_text(found.bytes_a_run * runs));
 }
 
-// Note how long a run takes: by its work, and by what that of five steps, or of those within three seconds, takes here.
+// Note how long a run takes: by its work, and by what that of ten steps, or of those within three seconds, takes here.
 void estimate_time(Simulation simulation, const std::optional<WorkCurve>& curve) {
   constexpr double enough_s = 3, too_long_s = 10;
   const LiveLine clock(true);
   simulation.stop_when([&] { return clock.elapsed_s() > too_long_s; });
   double work = 0;
-  while (simulation.steps() < 5 && clock.elapsed_s() < enough_s && simulation.step())
+  while (simulation.steps() < 10 && clock.elapsed_s() < enough_s && simulation.step())
     work += work_of_step(simulation.measures());
   if (work == 0) return;
   const auto [least, most] = expected_work(simulation.controls(), curve);
   const double unit_s = clock.elapsed_s() / work;
-  if (curve)
-    fmt::print(stderr, "note: a run takes {}\n", about(unit_s * most));
-  else
-    fmt::print(stderr, "note: a run takes between {} and {}, very roughly\n", about(unit_s * least),
-               about(unit_s * most));
+  const std::string from = about(unit_s * least), to = about(unit_s * most);
+  fmt::print(stderr, "note: a run takes {}\n",
+             from == to ? to : fmt::format("between {} and {}, very roughly", from, to));
 }
 
 }  // namespace
 
 void add_check_command(CLI::App& app, int&) {
-  CLI::App* command = app.add_subcommand("check",
-                                         "validate a scenario, print it with all defaults and estimate the time of a "
-                                         "run; or validate a study and estimate its cost");
+  CLI::App* command = app.add_subcommand(
+      "check", "validate a scenario or study and estimate its cost; print a scenario with all defaults");
   auto options = std::make_shared<ScenarioOptions>();
   auto threads = std::make_shared<int>(0);
   options->add_to(*command);

@@ -12,6 +12,7 @@
 #include "core/words.hpp"
 #include "record/archive.hpp"
 #include "record/results.hpp"
+#include "record/time_left.hpp"
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"
 #include "show/report.hpp"
