@@ -66,8 +66,10 @@ void estimate_time(Simulation simulation, const std::optional<WorkCurve>& curve)
   const LiveLine clock(true);
   simulation.stop_when([&] { return clock.elapsed_s() > too_long_s; });
   double work = 0;
-  while (simulation.steps() < 10 && clock.elapsed_s() < enough_s && simulation.step())
-    work += work_of_step(simulation.measures());
+  while (simulation.steps() < 10 && clock.elapsed_s() < enough_s && simulation.step()) {
+    const Observation& row = simulation.measures();
+    work += work_of_step(row["newton_iterations"], row["linear_iterations"]);
+  }
   if (work == 0) return;
   const auto [least, most] = expected_work(simulation.controls(), curve);
   const double unit_s = clock.elapsed_s() / work;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <sstream>
 
 #include "core/clock.hpp"
-#include "core/errors.hpp"
 #include "core/words.hpp"
 #include "record/results.hpp"
 #include "scenario/builtin.hpp"
@@ -29,8 +29,6 @@ double end_s(const RunControls& controls, const WorkCurve& curve) {
 double work_of_step(std::optional<double> newton_iterations, std::optional<double> linear_iterations) {
   return 0.5 + newton_iterations.value_or(0) + linear_iterations.value_or(0) / 10;
 }
-
-double work_of_step(const Observation& row) { return work_of_step(row["newton_iterations"], row["linear_iterations"]); }
 
 double WorkCurve::at(double time_s) const {
   const double last_s = times_s.back(), before_s = 0.95 * last_s;
@@ -76,10 +74,8 @@ std::optional<WorkCurve> curve_of_run(const std::filesystem::path& directory, co
     curve.work.push_back(curve.work.back() + work_of_step(series.rows[i][*newton], series.rows[i][*linear]));
   }
   return curve;
-} catch (const FileError&) {
+} catch (const std::exception&) {
   return {};  // damaged results may be overwritten, too
-} catch (const nlohmann::json::exception&) {
-  return {};
 }
 
 std::pair<double, double> expected_work(const RunControls& controls, const std::optional<WorkCurve>& curve) {

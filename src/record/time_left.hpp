@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "measure/observation.hpp"
 #include "scenario/scenario.hpp"
 #include "simulation/controls.hpp"
 
@@ -19,7 +18,6 @@ namespace plica {
 /// Work of a step, the same on any machine: in Newton iterations, to which ten linear ones or the fixed costs of two
 /// steps are about equal. tools/work_curves.py counts alike.
 double work_of_step(std::optional<double> newton_iterations, std::optional<double> linear_iterations);
-double work_of_step(const Observation& row);
 
 /// Work of a finished run up to a simulated time; both increase from 0.
 struct WorkCurve {
