@@ -63,19 +63,20 @@ std::optional<WorkCurve> builtin_curve(const Scenario& scenario) {
 
 std::optional<WorkCurve> curve_of_run(const std::filesystem::path& directory, const Scenario& scenario) try {
   const nlohmann::ordered_json summary = read_summary(directory);
-  if (summary.is_null() || summary.at("scenario") != scenario.name) return {};
-  if (summary.at("status") != "equilibrium" && summary.at("status") != "end_time") return {};
+  const std::string status = summary.at("status");
+  if (summary.at("scenario") != scenario.name || (status != "equilibrium" && status != "end_time")) return {};
   const Series series = read_series(directory / "series.csv");
-  const auto newton = series.column("newton_iterations"), linear = series.column("linear_iterations");
-  if (!newton || !linear || series.rows.size() < 2 || series.rows.front().front() != 0) return {};
+  const std::size_t newton = series.column("newton_iterations").value();
+  const std::size_t linear = series.column("linear_iterations").value();
+  if (series.rows.size() < 2) return {};
   WorkCurve curve{{0}, {0}};
   for (std::size_t i = 1; i < series.rows.size(); ++i) {
     curve.times_s.push_back(*series.rows[i].front());
-    curve.work.push_back(curve.work.back() + work_of_step(series.rows[i][*newton], series.rows[i][*linear]));
+    curve.work.push_back(curve.work.back() + work_of_step(series.rows[i][newton], series.rows[i][linear]));
   }
   return curve;
 } catch (const std::exception&) {
-  return {};  // damaged results may be overwritten, too
+  return {};  // there is none, or it is damaged
 }
 
 std::pair<double, double> expected_work(const RunControls& controls, const std::optional<WorkCurve>& curve) {
@@ -119,8 +120,10 @@ std::size_t TimeLeft::start_of_last(double part) const {
   return static_cast<std::size_t>(std::min(from, samples_.end() - 2) - samples_.begin());
 }
 
-// As motion decays, steps lengthen in proportion to time, until the longest.
-double TimeLeft::to_end_time() const {
+// To the end time, as steps lengthen in proportion to time until the longest, or to equilibrium.
+std::optional<double> TimeLeft::by_trend() const {
+  constexpr std::size_t least_samples = 6;
+  if (samples_.size() < least_samples) return {};
   const std::size_t i = start_of_last(0.3);
   const Sample &from = samples_[i], &now = samples_.back();
   const auto steps = static_cast<double>(samples_.size() - 1 - i);
@@ -130,7 +133,8 @@ double TimeLeft::to_end_time() const {
   const double grown_s = std::min(controls_.end_s, now.time_s * longest_s / next_s);
   const double steps_left =
       now.time_s / next_s * std::log(grown_s / now.time_s) + (controls_.end_s - grown_s) / longest_s;
-  return steps_left * (now.elapsed_s - from.elapsed_s) / steps;
+  const double left_s = steps_left * (now.elapsed_s - from.elapsed_s) / steps;
+  return std::min(left_s, to_equilibrium().value_or(left_s));
 }
 
 // After the last change of activity, speeds decay exponentially with work.
@@ -144,13 +148,6 @@ std::optional<double> TimeLeft::to_equilibrium() const {
   const double decay = std::log(samples_[i].fastest_um_per_s / now.fastest_um_per_s);
   if (!(decay > 0)) return {};
   return std::log(std::max(1.0, now.fastest_um_per_s / goal)) * (now.elapsed_s - samples_[i].elapsed_s) / decay;
-}
-
-std::optional<double> TimeLeft::by_trend() const {
-  constexpr std::size_t least_samples = 6;
-  if (samples_.size() < least_samples) return {};
-  const double end = to_end_time();
-  return std::min(end, to_equilibrium().value_or(end));
 }
 
 }  // namespace plica

@@ -58,7 +58,6 @@ class TimeLeft {
     double elapsed_s, time_s, fastest_um_per_s;
   };
   [[nodiscard]] std::size_t start_of_last(double part) const;
-  [[nodiscard]] double to_end_time() const;
   [[nodiscard]] std::optional<double> to_equilibrium() const;
   [[nodiscard]] std::optional<double> by_trend() const;
 
