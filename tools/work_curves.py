@@ -44,7 +44,7 @@ def measured_run(plica, name, out):
 
 def curve(rows, spent_s):
     """Total work, and simulated times by which equal parts of the processor time have passed."""
-    work = sum(0.5 + float(row["newton_iterations"]) + float(row["linear_iterations"]) / 10 for row in rows[1:])
+    work = sum(1 + float(row["newton_iterations"]) + float(row["linear_iterations"]) / 10 for row in rows[1:])
     times, i = [], 0
     for part in range(1, PARTS + 1):
         wanted = spent_s[0] + (spent_s[-1] - spent_s[0]) * part / PARTS

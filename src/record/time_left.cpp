@@ -27,7 +27,7 @@ double end_s(const RunControls& controls, const WorkCurve& curve) {
 }  // namespace
 
 double work_of_step(std::optional<double> newton_iterations, std::optional<double> linear_iterations) {
-  return 0.5 + newton_iterations.value_or(0) + linear_iterations.value_or(0) / 10;
+  return 1 + newton_iterations.value_or(0) + linear_iterations.value_or(0) / 10;
 }
 
 double WorkCurve::at(double time_s) const {

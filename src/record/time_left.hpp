@@ -15,8 +15,8 @@
 
 namespace plica {
 
-/// Work of a step, the same on any machine: in Newton iterations, to which ten linear ones or the fixed costs of two
-/// steps are about equal. tools/work_curves.py counts alike.
+/// Work of a step, the same on any machine: in Newton iterations, to which ten linear ones or the fixed costs of a
+/// step are about equal. tools/work_curves.py counts alike.
 double work_of_step(std::optional<double> newton_iterations, std::optional<double> linear_iterations);
 
 /// Work of a finished run up to a simulated time; both increase from 0.
