@@ -22,7 +22,8 @@ inline std::string duration(double seconds) {
 inline std::string about(double seconds) {
   if (seconds < 10) return "a few seconds";
   if (seconds < 95) return fmt::format("about {:.0f} s", 5 * std::round(seconds / 5));
-  return seconds < 5700 ? fmt::format("about {:.0f} min", seconds / 60) : fmt::format("about {:.2g} h", seconds / 3600);
+  if (seconds < 5700) return fmt::format("about {:.0f} min", seconds / 60);
+  return fmt::format("about {:.{}f} h", seconds / 3600, seconds < 36'000 ? 1 : 0);
 }
 
 /// Simulated time in the unit that shows it.
