@@ -103,7 +103,9 @@ class Draft:
 
     @classmethod
     def of(cls, source: str | os.PathLike[str] | Scenario) -> Draft:
-        """Read a built-in scenario, a file or a Scenario. What it expects of its results is left out: it is to be changed."""
+        """Read a built-in scenario, a file or a Scenario.
+
+        What it expects of its results is left out: it is to be changed."""
         scenario = source if isinstance(source, Scenario) else Scenario(source)
         scenario._require_file("plica.studio")
         name, _, text = scenario._source
@@ -156,7 +158,7 @@ class Draft:
 
 
 def text_of(table: Table, base: str) -> str:
-    """Write a complete scenario as its differences from a built-in one, or whole where differences cannot express it."""
+    """Write a complete scenario as its differences from a built-in one, or whole where these cannot express it."""
     if base:
         short: Table = changed({"format": 1, "base": base}, differences(table, Scenario(base).to_dict()))
         read = Scenario(short).to_dict()
