@@ -15,6 +15,7 @@ void keep_freed_memory();
 /// Keep freed memory up to about 100 MB; for a module within another program.
 void keep_some_freed_memory();
 
+/// Peak memory of this process, MB (1e6 bytes).
 double peak_memory_MB();
 
 }  // namespace plica

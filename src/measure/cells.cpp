@@ -67,8 +67,7 @@ std::size_t short_edges(const Tissue& tissue, std::span<const Vec3> positions) {
       if (now < short_ratio * at_rest) found.emplace_back(std::min(a, b), std::max(a, b));
     }
   std::ranges::sort(found);
-  const auto repeated = std::ranges::unique(found);
-  return found.size() - repeated.size();
+  return static_cast<std::size_t>(std::unique(found.begin(), found.end()) - found.begin());
 }
 
 std::vector<double> activities(const Model& model, const State& state) {

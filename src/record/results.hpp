@@ -32,6 +32,7 @@ Series read_series(const std::filesystem::path& file, std::uintmax_t most_bytes 
 /// Read summary.json; null if missing. Throws FileError for damaged content.
 nlohmann::ordered_json read_summary(const std::filesystem::path& directory);
 
+/// Number of a summary; empty if missing.
 std::optional<double> number_of(const nlohmann::ordered_json& summary, const std::string& key);
 
 /// Load scenario.toml of a run; empty if it is missing or of an incompatible version.

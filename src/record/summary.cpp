@@ -99,7 +99,7 @@ class SummaryLine {
     if (std::abs(number_of(summary_, key).value_or(1) - 1) > least_change) value(words, key);
   }
   void text(std::string part) { parts_.push_back(std::move(part)); }
-  [[nodiscard]] std::string line() const { return fmt::format("{}", fmt::join(parts_, ", ")); }
+  [[nodiscard]] std::string joined() const { return fmt::format("{}", fmt::join(parts_, ", ")); }
 
  private:
   const Json& summary_;
@@ -175,7 +175,7 @@ std::string outcome_text(const Scenario& scenario, const Tissue& tissue, const J
   if (const auto divisions = number_of(summary, "divisions").value_or(0); divisions > 0)
     line.text(fmt::format("{} cells after {} division{}", tissue.cells.size(), divisions, divisions == 1 ? "" : "s"));
   line.change("tissue volume ratio", "tissue_volume_ratio");
-  return line.line();
+  return line.joined();
 }
 
 std::string crossing_text(const Scenario& scenario, const Json& summary) {

@@ -38,6 +38,7 @@ class Study {
   /// Notes on input that is allowed, but possibly not intended.
   [[nodiscard]] std::vector<Diagnostic> notes() const;
 
+  /// Scenario of a run. Throws ScenarioError for invalid values.
   [[nodiscard]] Scenario scenario_of(std::size_t run) const;
   [[nodiscard]] std::string name_of(std::size_t run) const;
 

@@ -39,6 +39,7 @@ class OuterShape {
   /// along it leaves the surface, um; negative outside. If the line misses the surface, up to its height at the end.
   [[nodiscard]] double depth(const Vec3& point, const Vec3& outward) const;
 
+  /// Return the enclosed volume, um^3.
   [[nodiscard]] double volume() const;
 
   [[nodiscard]] const std::optional<Capsule>& capsule() const { return capsule_; }

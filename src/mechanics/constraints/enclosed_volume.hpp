@@ -38,6 +38,7 @@ class EnclosedVolume final : public Constraint {
   [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const Division& division,
                                                            std::span<const Vec3> positions) const override;
 
+  /// Return the volume, um^3.
   [[nodiscard]] double volume(std::span<const Vec3> positions) const;
   [[nodiscard]] std::size_t facet_count() const { return facets_.size(); }
 
