@@ -13,7 +13,7 @@
 namespace plica {
 namespace {
 
-std::string number(std::optional<double> value) { return value ? fmt::format("{:.10g}", *value + 0.0) : ""; }
+std::string rounded(std::optional<double> value) { return value ? fmt::format("{:.10g}", *value + 0.0) : ""; }
 
 // Range over all draws, if there are several with a number.
 std::string range_text(const ExperimentResults& results, std::size_t e, const Outcome& outcome) {
@@ -38,7 +38,7 @@ std::vector<std::string> row_of(const ExperimentResults& results, std::size_t e,
           outcome.observed,
           outcome.source,
           criterion_text(outcome, results.experiments()),
-          number(results.outcome(e, outcome, 0).judged),
+          rounded(results.outcome(e, outcome, 0).judged),
           range_text(results, e, outcome),
           fmt::format("{}", tally.hits),
           fmt::format("{}", tally.draws),

@@ -336,15 +336,17 @@ TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
          "test.toml:9: time.scheme: the paper's algorithm supports four-sided cells only");
 }
 
-const std::string sheet = sheet_table(60, 50, 10, 60);
+const std::string periodic_sheet = sheet_table(60, 50, 10, 60);
 
 std::unique_ptr<Model> model_of(const std::string& text) { return make_model(scenario_of(text)); }
 
 TEST(PeriodicKeys, WhatDoesNotGoWithThemIsRefused) {
-  const std::string both = sheet + "periodic = [\"x\", \"y\"]\n", along = sheet + "periodic = [\"x\"]\n";
+  const std::string both = periodic_sheet + "periodic = [\"x\", \"y\"]\n",
+                    along = periodic_sheet + "periodic = [\"x\"]\n";
   const WrongScenarios cases = {
-      {sheet + "periodic = [\"z\"]", "7: embryo.periodic: \"z\" is unknown; set periodic to a list of: x | y"},
-      {sheet + "periodic = [\"x\", \"x\"]", "7: embryo.periodic: \"x\" occurs twice; list each direction once"},
+      {periodic_sheet + "periodic = [\"z\"]", "7: embryo.periodic: \"z\" is unknown; set periodic to a list of: x | y"},
+      {periodic_sheet + "periodic = [\"x\", \"x\"]",
+       "7: embryo.periodic: \"x\" occurs twice; list each direction once"},
       {"[embryo]\nshape = \"egg\"\nperiodic = [\"x\"]",
        "3: embryo.periodic: is not used with shape \"egg\"; remove periodic, or set shape to sheet"},
       {along + "curvature_per_um = [0.004, 0.004]",
@@ -371,7 +373,7 @@ TEST(PeriodicKeys, WhatDoesNotGoWithThemIsRefused) {
 }
 
 TEST(PeriodicKeys, ThePartsOfTheRimThatAreLeftAreHeld) {
-  const auto model = model_of(sheet + "periodic = [\"x\"]\nrim = \"held\"");
+  const auto model = model_of(periodic_sheet + "periodic = [\"x\"]\nrim = \"held\"");
   const Tissue& tissue = model->tissue;
   std::size_t held = 0;
   for (std::size_t n = 0; n < tissue.free_node_count(); ++n) {
@@ -384,7 +386,8 @@ TEST(PeriodicKeys, ThePartsOfTheRimThatAreLeftAreHeld) {
 
 // A hold at the far end of a period fixes the periodic originals.
 TEST(PeriodicKeys, AHoldOfAnImageHolds) {
-  const auto model = model_of(sheet + "periodic = [\"x\", \"y\"]\n[hold.end]\nregion = \"all\"\nx_um = [30, 40]\n");
+  const auto model =
+      model_of(periodic_sheet + "periodic = [\"x\", \"y\"]\n[hold.end]\nregion = \"all\"\nx_um = [30, 40]\n");
   std::size_t held = 0;
   for (std::size_t n = 0; n < model->tissue.free_node_count(); ++n)
     if (model->held[n][0]) {
@@ -396,8 +399,9 @@ TEST(PeriodicKeys, AHoldOfAnImageHolds) {
 }
 
 TEST(PeriodicKeys, RegionsReachAcrossTheEnd) {
-  const auto model = model_of(
-      sheet + "periodic = [\"x\", \"y\"]\n[region.end]\nx_um = [24, 30]\n[region.beside]\nneighbours_of = \"end\"\n");
+  const auto model =
+      model_of(periodic_sheet +
+               "periodic = [\"x\", \"y\"]\n[region.end]\nx_um = [24, 30]\n[region.beside]\nneighbours_of = \"end\"\n");
   const CellSet& beside = model->tissue.regions.at("beside");
   std::size_t far = 0;
   for (std::size_t c = 0; c < beside.size(); ++c)

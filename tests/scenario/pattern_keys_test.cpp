@@ -201,7 +201,7 @@ TEST_F(CellArrays, OfAnotherNumberOfCellsAreRefused) {
   EXPECT_SAYS(errors_of(load("myosin\nmuch\n")), "\"much\" of column myosin is not a number");
 }
 
-const std::string sheet = block_table(60, 20, 20, "3, 1, 1") + R"([vitelline]
+const std::string layered_block = block_table(60, 20, 20, "3, 1, 1") + R"([vitelline]
 enabled = false
 [region.first]
 x_um = [-30, -10]
@@ -221,7 +221,8 @@ const Cortex& cortex_of(const Model& model, const std::string& name) {
 
 TEST(AblationKeys, FacesTimesAndRegionsAreThoseGiven) {
   const std::unique_ptr<Model> model = make_model(scenario_of(
-      sheet + "[ablation.cut]\nregion = \"first\"\nfaces = [\"lateral\"]\nat_min = 1\nuntil_min = 3\nremaining = 0.5"));
+      layered_block +
+      "[ablation.cut]\nregion = \"first\"\nfaces = [\"lateral\"]\nat_min = 1\nuntil_min = 3\nremaining = 0.5"));
   const Cortex &top = cortex_of(*model, "top"), &walls = cortex_of(*model, "walls");
   EXPECT_TRUE(top.pattern()->ablations.empty());
   for (const auto& [time_s, first] : {std::pair(60.0, 1.0), {61.0, 0.5}, {180.0, 0.5}, {181.0, 1.0}}) {
@@ -243,17 +244,17 @@ TEST(AblationKeys, FacesTimesAndRegionsAreThoseGiven) {
   EXPECT_EQ(walls.program_jumps_s().back(), 180);
 
   const std::unique_ptr<Model> other =
-      make_model(scenario_of(sheet + "[ablation.cut]\nregion = \"first\"\nonly = [\"cortex.top\"]\nat_s = 0"));
+      make_model(scenario_of(layered_block + "[ablation.cut]\nregion = \"first\"\nonly = [\"cortex.top\"]\nat_s = 0"));
   EXPECT_TRUE(cortex_of(*other, "walls").pattern()->ablations.empty());
   EXPECT_EQ(*cortex_of(*other, "top").activity_of(CellId(0), 1, {}), 0);
 
   const std::unique_ptr<Model> all =
-      make_model(scenario_of(sheet + "[ablation.cut]\nregion = \"first\"\nonly = []\nat_s = 0"));
+      make_model(scenario_of(layered_block + "[ablation.cut]\nregion = \"first\"\nonly = []\nat_s = 0"));
   EXPECT_EQ(*cortex_of(*all, "walls").activity_of(CellId(0), 1, {}), 0);
 }
 
 TEST(AblationKeys, WhatIsWrongIsSaid) {
-  const auto cut = [](const std::string& keys) { return sheet + "[ablation.cut]\n" + keys; };
+  const auto cut = [](const std::string& keys) { return layered_block + "[ablation.cut]\n" + keys; };
   const WrongScenarios cases = {
       {cut("at_s = 5"), "test.toml:18: ablation.cut.region: is missing; set region to a text"},
       {cut("region = \"second\"\nat_s = 5"),
@@ -271,7 +272,8 @@ TEST(AblationKeys, WhatIsWrongIsSaid) {
 
 TEST(AblationKeys, WhatTakesNothingIsTold) {
   const auto advice_on = [](const std::string& keys) {
-    const Scenario scenario = scenario_of(sheet + "[time]\nend_s = 60\n[ablation.cut]\nregion = \"first\"\n" + keys);
+    const Scenario scenario =
+        scenario_of(layered_block + "[time]\nend_s = 60\n[ablation.cut]\nregion = \"first\"\n" + keys);
     std::string lines;
     for (const std::string& line : advice(scenario, *make_model(scenario)))
       if (line.find("ablation") != std::string::npos) lines += line;

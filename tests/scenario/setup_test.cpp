@@ -47,7 +47,7 @@ double barrier_Pa(const std::string& text, const Overrides& overrides = {}) {
   return *scenario_of(text, overrides).elasticity.corner_barrier_Pa;
 }
 
-const std::string row = "[embryo]\nshape = \"block\"\ncells = [3, 1, 1]\n";
+const std::string three_cells = "[embryo]\nshape = \"block\"\ncells = [3, 1, 1]\n";
 const std::string cut = "[division.cut]\nregion = \"all\"\nat_s = 5\n";
 
 TEST(AutomaticBarrier, IsATenthOfYoungsModulusWhereCellsArePolygonsOrDivide) {
@@ -62,7 +62,7 @@ TEST(AutomaticBarrier, IsATenthOfYoungsModulusWhereCellsArePolygonsOrDivide) {
               100)
         << shape;
   }
-  EXPECT_EQ(barrier_Pa(row + cut), 100);
+  EXPECT_EQ(barrier_Pa(three_cells + cut), 100);
 }
 
 TEST(AutomaticBarrier, IsNoneOnGridsThatDoNotDivide) {
@@ -81,9 +81,9 @@ TEST(AutomaticIntegrator, IsOfSecondOrderWhereItCanBe) {
        {"time.scheme=linearly-implicit", "volume.method=projection", "dynamics.density_kg_per_m3=1"}) {
     Overrides overrides = {bar};
     if (bar.starts_with("time")) overrides.emplace_back("volume.method=none");
-    EXPECT_EQ(scenario_of(row, overrides).time.integrator, "backward-euler") << bar;
+    EXPECT_EQ(scenario_of(three_cells, overrides).time.integrator, "backward-euler") << bar;
   }
-  EXPECT_EQ(scenario_of(row, {"time.integrator=backward-euler"}).time.integrator, "backward-euler");
+  EXPECT_EQ(scenario_of(three_cells, {"time.integrator=backward-euler"}).time.integrator, "backward-euler");
 }
 
 TEST(AutomaticValues, AreRecordedAsNumbers) {

@@ -3,14 +3,10 @@
 
 #include "core/errors.hpp"
 #include "support/frames.hpp"
+#include "support/looks.hpp"
 #include "tissue/shapes/embryo.hpp"
 
 namespace {
-
-const ColourField& field(const std::string& name) {
-  return *std::ranges::find(colour_fields(), name, &ColourField::name);
-}
-const View& view(const std::string& name) { return *std::ranges::find(views(), name, &View::name); }
 
 Picture picture_of(const Frame& frame, const std::vector<std::string>& rows, int columns) {
   Picture picture;

@@ -8,19 +8,14 @@
 #include "core/errors.hpp"
 #include "record/mesh_writer.hpp"
 #include "show/boundary_surface.hpp"
-#include "show/looks.hpp"
 #include "show/picture_layout.hpp"
 #include "show/report.hpp"
 #include "support/frames.hpp"
+#include "support/looks.hpp"
 #include "support/own_folder.hpp"
 #include "support/tissues.hpp"
 
 namespace {
-
-const ColourField& field(const std::string& name) {
-  return *std::ranges::find(colour_fields(), name, &ColourField::name);
-}
-const View& view(const std::string& name) { return *std::ranges::find(views(), name, &View::name); }
 
 struct Image {
   int width = 0, height = 0;

@@ -206,12 +206,12 @@ pulse = { period_s = 25, amplitude = 0.5, phase = "together" }
 end_s = 60
 )";
 
-Scenario scenario_of(const std::vector<std::string>& overrides) {
+Scenario pulsing_with(const std::vector<std::string>& overrides) {
   return load_scenario({"test", "test.toml", pulsing}, overrides);
 }
 
 Vectors end_of(const std::vector<std::string>& overrides) {
-  Simulation simulation(scenario_of(overrides));
+  Simulation simulation(pulsing_with(overrides));
   EXPECT_EQ(simulation.run(), RunStatus::end_time);
   return simulation.state().positions;
 }
@@ -229,7 +229,7 @@ TEST(Pulses, HalfTheStepHalvesTheError) {
 }
 
 TEST(Pulses, StepsSeeThemAndTheRunGoesOn) {
-  Simulation simulation(scenario_of({"stop.equilibrium_speed_um_per_min=1e6"}));
+  Simulation simulation(pulsing_with({"stop.equilibrium_speed_um_per_min=1e6"}));
   double time_s = 0, longest = 0, least = 2, most = 0;
   while (simulation.step()) {
     longest = std::max(longest, simulation.state().time_s - std::exchange(time_s, simulation.state().time_s));
@@ -250,11 +250,11 @@ TEST(Pulses, StepsSeeThemAndTheRunGoesOn) {
 }
 
 TEST(Pulses, ResumedRunsGoOnToTheSameBits) {
-  Simulation whole(scenario_of({}));
+  Simulation whole(pulsing_with({}));
   whole.run_until(20);
   const RunMemory memory = whole.memory();
   whole.run();
-  Simulation rest(scenario_of({}));
+  Simulation rest(pulsing_with({}));
   rest.go_on_from(memory);
   rest.run();
   expect_same(rest.state(), whole.state());

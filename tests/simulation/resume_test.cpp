@@ -59,14 +59,14 @@ void expect_resumable(const std::string& name, const std::vector<std::string>& o
   }
 }
 
-const std::string first_order = "time.integrator=\"backward-euler\"", second_order = "time.integrator=\"bdf2\"";
+const std::string euler = "time.integrator=\"backward-euler\"", bdf2 = "time.integrator=\"bdf2\"";
 
-TEST(Resume, GoesOnToTheSameBits) { expect_resumable("drosophila", {"time.end_min=2", second_order}, 13); }
+TEST(Resume, GoesOnToTheSameBits) { expect_resumable("drosophila", {"time.end_min=2", bdf2}, 13); }
 
-TEST(Resume, WithFirstOrder) { expect_resumable("drosophila", {"time.end_min=1", first_order}, 13); }
+TEST(Resume, WithFirstOrder) { expect_resumable("drosophila", {"time.end_min=1", euler}, 13); }
 
 TEST(Resume, WithAnotherOrder) {
-  const std::vector<std::string> first = {"time.end_s=6", first_order}, second = {"time.end_s=6", second_order};
+  const std::vector<std::string> first = {"time.end_s=6", euler}, second = {"time.end_s=6", bdf2};
   const Trace of_first = trace("drosophila", first), of_second = trace("drosophila", second);
   const auto half = [](const Trace& whole) { return whole.memories.size() / 2; };
   for (const Trace& changed : {trace("drosophila", second, &of_first, half(of_first)),
@@ -93,13 +93,13 @@ const std::string flowing = "elasticity.relaxation_min=1", neo_hookean = "elasti
 
 TEST(Resume, WithCellsThatFlow) {
   expect_resumable("furrow-slice", {"time.end_min=3", neo_hookean, flowing}, 7);
-  expect_resumable("drosophila", {"time.end_s=10", neo_hookean, flowing, first_order}, 5);
+  expect_resumable("drosophila", {"time.end_s=10", neo_hookean, flowing, euler}, 5);
 }
 
 TEST(Resume, WithCellsThatFlowAcrossDivisions) {
   expect_resumable("drosophila-division-twice",
                    {"division.floor.at_min=0.2", "division.floor.growth_min=0.3", "division.borders.at_min=0.5",
-                    "time.end_min=0.7", second_order, neo_hookean, flowing},
+                    "time.end_min=0.7", bdf2, neo_hookean, flowing},
                    11);
 }
 
@@ -174,7 +174,7 @@ TEST(Resume, FromResumableStepsOfARunLeftAlone) {
 TEST(Resume, AcrossDivisions) {
   expect_resumable("drosophila-division-twice",
                    {"division.floor.at_min=0.2", "division.floor.growth_min=0.3", "division.borders.at_min=0.7",
-                    "division.borders.growth_min=0.3", "time.end_min=1.5", second_order},
+                    "division.borders.growth_min=0.3", "time.end_min=1.5", bdf2},
                    11);
 }
 

@@ -243,7 +243,7 @@ y_um = [-10, 10]
 end_s = 2
 )";
 const std::string without_barrier = "[elasticity]\ncorner_barrier_Pa = 0\n";
-const std::string springs = "[contraction.apical]\nregion = \"stripe\"\nstiffness_nN_per_um = 12\n";
+const std::string stripe_springs = "[contraction.apical]\nregion = \"stripe\"\nstiffness_nN_per_um = 12\n";
 
 // Cells of a grid; follow with the end of the run.
 const std::string grid = block_table(30, 20, 15, "6, 4, 1") + R"([time]
@@ -273,7 +273,7 @@ struct FailingCase {
 
 const std::vector<FailingCase> failing = {
     {"springs of a sheet",
-     held_sheet + without_barrier + springs,
+     held_sheet + without_barrier + stripe_springs,
      {"elasticity.corner_barrier_Pa", "contraction.apical.program", "contraction.apical.stiffness_nN_per_um"}},
     {"tension of a sheet",
      held_sheet + without_barrier + "[contraction.apical]\nregion = \"stripe\"\ntension_mN_per_m = 12\n",
@@ -282,7 +282,7 @@ const std::vector<FailingCase> failing = {
      held_sheet + without_barrier + "[cortex.apical]\nregion = \"stripe\"\ntension_mN_per_m = 12\n",
      {"elasticity.corner_barrier_Pa", "cortex.apical.program", "cortex.apical.tension_mN_per_m"}},
     {"gradual springs",
-     held_sheet + without_barrier + springs + "program = { time_s = [0, 1], activity = [0, 1] }\n",
+     held_sheet + without_barrier + stripe_springs + "program = { time_s = [0, 1], activity = [0, 1] }\n",
      {"elasticity.corner_barrier_Pa", "contraction.apical.stiffness_nN_per_um"}},
     {"springs that push",
      grid + "end_s = 0.2\n" + push + "-200\n",
@@ -328,7 +328,7 @@ TEST(Remedies, EachCuresOrDelaysAFailure) {
 
 // A barrier is what helps most, so it comes first, and where cells are polygons it is there already.
 TEST(Remedies, PolygonsNeedNoneByDefault) {
-  const Simulation simulation = ran(held_sheet + springs);
+  const Simulation simulation = ran(held_sheet + stripe_springs);
   EXPECT_NE(simulation.status(), RunStatus::failed) << simulation.failure();
 }
 

@@ -13,8 +13,8 @@
 namespace plica {
 namespace {
 
-constexpr std::size_t batch_size = ElementChunks::batch_size;
-constexpr std::size_t numbers_a_batch = 8 * 6 * batch_size;
+constexpr std::size_t lanes = ElementChunks::batch_size;
+constexpr std::size_t numbers_a_batch = 8 * 6 * lanes;
 static_assert(sizeof(FlowedBatch) == numbers_a_batch * sizeof(double));
 
 Vec3 gauss_point(int g) { return hex_reference_nodes[static_cast<std::size_t>(g)] / std::sqrt(3.0); }
@@ -35,20 +35,20 @@ std::span<FlowedBatch> batches_of(std::span<double> internal) {
   return {reinterpret_cast<FlowedBatch*>(internal.data()), internal.size() / numbers_a_batch};
 }
 
-// First number of a Gauss point of an element; the next is batch_size further.
+// First number of a Gauss point of an element; the next is `lanes` further.
 template <class Batches>
 auto* first_of(const Batches& batches, std::size_t place, int g) {
-  return &batches[place / batch_size].points[g][0][place % batch_size];
+  return &batches[place / lanes].points[g][0][place % lanes];
 }
 
 void put(const Mat3& symmetric, double* first) {
   const double values[6] = {symmetric(0, 0), symmetric(1, 1), symmetric(2, 2),
                             symmetric(0, 1), symmetric(1, 2), symmetric(2, 0)};
-  for (std::size_t k = 0; k < 6; ++k) first[k * batch_size] = values[k];
+  for (std::size_t k = 0; k < 6; ++k) first[k * lanes] = values[k];
 }
 
 Mat3 symmetric_at(const double* first) {
-  const auto at = [&](std::size_t k) { return first[k * batch_size]; };
+  const auto at = [&](std::size_t k) { return first[k * lanes]; };
   Mat3 result;
   result << at(0), at(3), at(5), at(3), at(1), at(4), at(5), at(4), at(2);
   return result;

@@ -21,9 +21,6 @@
 namespace plica {
 namespace {
 
-constexpr int rounds = 35;  // of Lloyd's relaxation, as on closed surfaces (surface_polygons.cpp)
-constexpr double overrelaxation = 1.5;
-
 using IntegerPair = std::array<int, 2>;  // along x and y
 
 /// Neighbour beyond a side: a cell, so many periods away, or below 0 a side of the rectangle.
@@ -288,11 +285,10 @@ Vectors even_points(const Rectangle& rectangle, std::size_t count, std::uint64_t
     points.emplace_back(x, next() * size[1], 0);
   }
   std::ranges::sort(points, {}, [](const Vec3& p) { return p.x(); });
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < Lloyd::rounds; ++round) {
     const std::vector<Cut> cuts = cut_rectangle(points, rectangle);
-    const double share = round < 5 ? 1 : overrelaxation;
     for (std::size_t i = 0; i < count; ++i) {
-      points[i] += share * (centroid(cuts[i]) - points[i]);
+      points[i] += Lloyd::share(round) * (centroid(cuts[i]) - points[i]);
       for (int axis = 0; axis < 2; ++axis) {
         double& x = points[i][axis];
         x = is_periodic[axis] ? x - size[axis] * std::floor(x / size[axis] + 0.5)

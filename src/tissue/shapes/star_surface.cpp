@@ -37,14 +37,14 @@ double least_eigenvalue(const Eigen::Matrix2d& hessian, const Eigen::Matrix2d& m
   return half_sum - std::sqrt(std::max(0.0, half_sum * half_sum - hessian.determinant() / det));
 }
 
-constexpr std::size_t least_points = 12;
+constexpr std::size_t fewest_points = 12;
 constexpr std::size_t points_per_coefficient = 3;
-constexpr double widest_hole_cosine = 0.2;  // about 78 degrees from a direction to the next point: no surface around
-constexpr double largest_share = 0.1;       // of a point's radius, that it may be from the surface
+constexpr double widest_gap_cosine = 0.2;  // about 78 degrees from a direction to the next point: no surface around
+constexpr double largest_share = 0.1;      // of a point's radius, that it may be from the surface
 
-void check_points(const Vectors& points) {
-  if (points.size() < least_points)
-    throw MeshError("{} points; a closed surface requires at least {}", points.size(), least_points);
+void check_surrounding(const Vectors& points) {
+  if (points.size() < fewest_points)
+    throw MeshError("{} points; a closed surface requires at least {}", points.size(), fewest_points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) throw MeshError("row {} is not a point; give three finite lengths in um", i);
     if (points[i].norm() < 1e-9) throw MeshError("row {} is at the origin; points must surround the origin", i);
@@ -56,7 +56,7 @@ void check_points(const Vectors& points) {
   for (const Vec3& direction : even_directions(200)) {
     double nearest = -1;
     for (const Vec3& other : directions) nearest = std::max(nearest, direction.dot(other));
-    if (nearest < widest_hole_cosine)
+    if (nearest < widest_gap_cosine)
       throw MeshError(
           "no point lies toward ({:.2f}, {:.2f}, {:.2f}), seen from the origin; points must surround the origin: shift "
           "them; an open sheet is made by Python's plica.polygons_of_centres",
@@ -431,7 +431,7 @@ Vectors even_directions(std::size_t count) {
 }
 
 StarFit fit_star_surface(const Vectors& points, int degree) {
-  check_points(points);
+  check_surrounding(points);
   degree = std::clamp(degree, 0, largest_harmonic_degree);
   while (degree > 0 && harmonic_count(degree) * points_per_coefficient > points.size()) --degree;
   const Frame frame = frame_of(points);

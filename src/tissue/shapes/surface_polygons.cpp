@@ -220,10 +220,6 @@ MendedPolygons mend_about(const Vectors& points, const StarSurface& surface, con
   return mend_polygons(rules, options, polygons);
 }
 
-// As many as bring the areas' variation to 8 % from a random start; more would make a crystal of it.
-constexpr int rounds = 35;
-constexpr double overrelaxation = 1.5;  // of Lloyd's move; he converges slowly on long waves
-
 // A number in [0, 1), the same with every standard library.
 double next_number(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
 
@@ -383,14 +379,12 @@ Vectors even_points(const StarSurface& surface, std::size_t count, std::uint64_t
   // Cells that are neighbours should be near each other in memory, too.
   std::ranges::sort(points, {}, [](const Vec3& p) { return p.x(); });
   SurfaceTriangulation triangulation = hull_triangulation(points, surface);
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; round < Lloyd::rounds; ++round) {
     flip_to_delaunay(points, triangulation);
     const PolygonSurface cells = dual_polygons(points, triangulation, surface);
-    // Not further than the middle at first, while cells change their neighbours.
-    const double share = round < 5 ? 1 : overrelaxation;
     for (std::size_t i = 0; i < count; ++i) {
       const Vec3 middle = fan_about(cells.vertices, cells.polygons[i], points[i]).centroid;
-      points[i] = surface.put_on(points[i] + share * (middle - points[i]));
+      points[i] = surface.put_on(points[i] + Lloyd::share(round) * (middle - points[i]));
     }
     // The old neighbours are a start for the new ones, unless a triangle has turned over.
     if (!looks_outward(points, triangulation)) triangulation = hull_triangulation(points, surface);

@@ -10,7 +10,7 @@
 
 namespace {
 
-const BlockShape one_cell{.length_um = 20, .width_um = 30, .cell_height_um = 40, .cells = {1, 1, 1}};
+const BlockShape oblong_cell{.length_um = 20, .width_um = 30, .cell_height_um = 40, .cells = {1, 1, 1}};
 
 NeoHookean law_of(const Tissue& tissue, double mu, double relaxation_s = 0, Kernels kernels = chosen_kernels()) {
   return {tissue, std::vector<NeoHookeanMaterial>(tissue.elements.size(), {mu, relaxation_s}), kernels};
@@ -60,7 +60,7 @@ TEST(NeoHookean, SemidefiniteTangentIsStifferAlongRotations) {
 
 // Where nothing is indefinite at a Gauss point, it is all of the tangent.
 TEST(NeoHookean, SemidefiniteTangentIsExactWhereThatIsSemidefinite) {
-  const Tissue tissue = build_block(one_cell);
+  const Tissue tissue = build_block(oblong_cell);
   const NeoHookean law = law_of(tissue, 0.4);
   Motion motion = deformed(tissue, Vec3(1.1, 1.2, 1.15).asDiagonal());
   const Eigen::MatrixXd exact = DenseTangent(law, motion.step()).matrix;
@@ -83,7 +83,7 @@ TEST(NeoHookean, RestShapeHasNoForceAndTurningGivesNone) {
 
 // P = mu (F - F^-T): stretched 2.5 times, squeezed to 0.3, sheared by 2.
 TEST(NeoHookean, StressAtLargeStrainsIsTheKnownOne) {
-  const Tissue tissue = build_block(one_cell);
+  const Tissue tissue = build_block(oblong_cell);
   const NeoHookean law = law_of(tissue, 0.4);
   for (const double stretch : {2.5, 0.3}) {
     const Mat3 P = stress(tissue, forces_of(law, deformed(tissue, Vec3(stretch, 0.9, 1.4).asDiagonal()).step()));
@@ -102,7 +102,7 @@ TEST(NeoHookean, StressAtLargeStrainsIsTheKnownOne) {
 
 // With Dilatation of modulus lambda, small strains have Young's modulus and Poisson's ratio.
 TEST(NeoHookean, WithDilatationSmallStrainsHaveTheModuli) {
-  const Tissue tissue = build_block(one_cell);
+  const Tissue tissue = build_block(oblong_cell);
   const ElasticModuli moduli = ElasticModuli::from_young(1, 0.3);
   const NeoHookean law = law_of(tissue, moduli.shear_modulus);
   const Dilatation dilatation(tissue, in_elements(tissue, moduli.lame_lambda), false);
@@ -118,7 +118,7 @@ TEST(NeoHookean, WithDilatationSmallStrainsHaveTheModuli) {
 }
 
 TEST(NeoHookean, IsInfiniteWhereAGaussPointIsInsideOut) {
-  const Tissue tissue = build_block(one_cell);
+  const Tissue tissue = build_block(oblong_cell);
   const NeoHookean law = law_of(tissue, 0.4);
   const auto flat = [&](double height) { return deformed(tissue, Vec3(1, 1, height).asDiagonal()); };
   EXPECT_GT(law.energy(flat(1e-6).step()), law.energy(flat(1e-3).step()));
@@ -151,7 +151,7 @@ TEST(NeoHookean, EveryInstructionSetAndAnyThreadsHaveTheSame) {
 
 // Small strains, held: stress decays as exp(-t/tau), to the order of the steps.
 TEST(NeoHookean, HeldStressDecaysAsMaxwellSays) {
-  const Tissue tissue = build_block(one_cell);
+  const Tissue tissue = build_block(oblong_cell);
   const double tau = 6;
   const NeoHookean law = law_of(tissue, 0.4, tau);
   Motion motion = deformed(tissue, Vec3(1.001, 1 / std::sqrt(1.001), 1 / std::sqrt(1.001)).asDiagonal());
@@ -171,7 +171,7 @@ TEST(NeoHookean, HeldStressDecaysAsMaxwellSays) {
 // A large, changing strain, against SciPy's integration of the flow (tests/verification/maxwell_truth.py), in steps of
 // first and of second order: the error falls by 2 and by 4 when they are halved.
 TEST(NeoHookean, FlowsAtLargeStrainsAsAnotherIntegratorSays) {
-  const Tissue tissue = build_block(one_cell);
+  const Tissue tissue = build_block(oblong_cell);
   const double tau = 60;
   const NeoHookean law = law_of(tissue, 1, tau);
   const auto gradient = [](double t) {

@@ -6,7 +6,7 @@
 
 namespace {
 
-const BlockShape one_cell{.length_um = 20, .width_um = 16, .cell_height_um = 40, .cells = {1, 1, 1}};
+const BlockShape narrow_cell{.length_um = 20, .width_um = 16, .cell_height_um = 40, .cells = {1, 1, 1}};
 
 TEST(ShapeMemory, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 5);
@@ -33,7 +33,7 @@ TEST(ShapeMemory, RestAndRigidMotionsHaveNoForceAndNoEnergy) {
 // attractor is placed here by another way, the singular value decomposition of sum x X^T (Kabsch 1976).
 TEST(ShapeMemory, EachNodeIsPulledStraightToItsPlaceInTheAttractor) {
   const double k = 8;
-  const Tissue tissue = distorted_block(one_cell, 2, 8);
+  const Tissue tissue = distorted_block(narrow_cell, 2, 8);
   const ShapeMemory law(tissue, {.stiffness = k}, 0);
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const Motion motion = random_motion(tissue, 4, seed);
@@ -64,7 +64,7 @@ TEST(ShapeMemory, ForcesHaveNoResultantAndNoTorque) {
 // what attractor_moduli says. A strain along one axis gives no force along the others.
 TEST(ShapeMemory, BrickHasTheModuliOfTheTheory) {
   const double k = 8, a = 20, b = 16, c = 40, size = 1e-5;
-  const Tissue tissue = build_block(one_cell);
+  const Tissue tissue = build_block(narrow_cell);
   const ShapeMemory law(tissue, {.stiffness = k}, 0);
   const auto modulus = [&](const Mat3& strain) {
     return 2 * law.energy(deformed(tissue, Mat3::Identity() + size * strain).step()) / (size * size * a * b * c);
@@ -121,7 +121,7 @@ TEST(ShapeMemory, DerivedStiffnessGivesTheMeanShearModulus) {
 }
 
 TEST(ShapeMemory, GivenStiffnessKeepsItsModuliInRefinedCells) {
-  BlockShape shape = one_cell;
+  BlockShape shape = narrow_cell;
   const Tissue coarse = build_block(shape);
   shape.elements_per_cell = {2, 2, 2};
   const Tissue fine = build_block(shape);
@@ -149,7 +149,7 @@ TEST(ShapeMemory, GivenStiffnessKeepsItsModuliInRefinedCells) {
 // A brick stretched along x: every node is off its place by the same, the tension is k d + P d / sqrt(d^2 + e^2).
 TEST(ShapeMemory, PreloadIsATensionThatDoesNotGrowWithLength) {
   const double k = 8, P = 5, e = 0.5;
-  const Tissue tissue = build_block(one_cell);
+  const Tissue tissue = build_block(narrow_cell);
   const ShapeMemory law(tissue, {.stiffness = k, .preload = P, .preload_length = e}, 0);
   for (const double stretch : {1e-6, 0.01, 0.05, 0.5}) {
     Mat3 F = Mat3::Identity();
@@ -167,7 +167,7 @@ TEST(ShapeMemory, PreloadIsATensionThatDoesNotGrowWithLength) {
 // same uniaxial modulus: E I with I = b c^3 / 12 and E = 2 k a / (b c) would be a third of the energy.
 TEST(ShapeMemory, BendsThreeTimesAsStiffAsABeamOfItsUniaxialModulus) {
   const double k = 8, a = 20, b = 16, c = 40, curvature = 1e-7;
-  const Tissue tissue = build_block(one_cell);
+  const Tissue tissue = build_block(narrow_cell);
   Motion motion = at_rest(tissue);
   for (Vec3& x : motion.positions) x += curvature * Vec3(-x.x() * x.z(), 0, x.x() * x.x() / 2);
   const double stiffness =
@@ -177,7 +177,7 @@ TEST(ShapeMemory, BendsThreeTimesAsStiffAsABeamOfItsUniaxialModulus) {
 }
 
 TEST(ShapeMemory, ViscosityIsThatOfTheCorotationalLaw) {
-  const Tissue tissue = build_block(one_cell);
+  const Tissue tissue = build_block(narrow_cell);
   const double viscosity = 3, rate = 1e-6;
   const ShapeMemory law(tissue, {.stiffness = 1e-12}, viscosity);
   Mat3 F = Mat3::Identity();
@@ -195,7 +195,7 @@ TEST(ShapeMemory, ViscosityIsThatOfTheCorotationalLaw) {
 }
 
 TEST(ShapeMemory, RefusesAnInvertedRestShape) {
-  Tissue tissue = build_block(one_cell);
+  Tissue tissue = build_block(narrow_cell);
   for (Vec3& X : tissue.element_rest_shape[0]) X.z() = -X.z();
   EXPECT_THROW(ShapeMemory(tissue, {.stiffness = 1}, 0), std::domain_error);
 }

@@ -14,15 +14,15 @@
 namespace {
 
 /// A random sparse quasi-definite matrix [A B^T; B -C], A and C positive definite, as pattern and values.
-struct System {
+struct SmallSystem {
   SparsePattern pattern;
   std::vector<double> values;
   Eigen::MatrixXd full;
 };
 
-System quasi_definite(int positive, int negative, Random& random) {
+SmallSystem quasi_definite(int positive, int negative, Random& random) {
   const int size = positive + negative;
-  System system;
+  SmallSystem system;
   system.full = Eigen::MatrixXd::Zero(size, size);
   for (int row = 0; row < size; ++row) {
     for (int column = 0; column <= row; ++column) {
@@ -48,7 +48,7 @@ Eigen::VectorXd random_vector(int size, Random& random) {
 TEST(DirectSolver, SolvesRandomQuasiDefiniteSystems) {
   Random random(1);
   for (const auto& [positive, negative] : {std::pair{3, 0}, {12, 3}, {120, 40}, {300, 100}}) {
-    const System system = quasi_definite(positive, negative, random);
+    const SmallSystem system = quasi_definite(positive, negative, random);
     const Eigen::VectorXd exact = random_vector(positive + negative, random);
     Eigen::VectorXd x = system.full * exact;
     const auto solver = make_direct_solver();
@@ -73,7 +73,7 @@ TEST(DirectSolver, SolvesASaddlePointWithoutItsDiagonal) {
 
 TEST(DirectSolver, NewValuesOnOnePatternGiveTheSameBitsAsAFreshSolver) {
   Random random(2);
-  const System system = quasi_definite(100, 30, random);
+  const SmallSystem system = quasi_definite(100, 30, random);
   std::vector<double> others = system.values;
   for (double& value : others) value *= 1.1;
   Eigen::VectorXd first = random_vector(130, random), second = first;
@@ -128,7 +128,7 @@ TEST(DirectSolver, SaysWhenTheMatrixIsSingular) {
 // MUMPS and METIS keep things to themselves: two solvers in two threads give what they give alone.
 TEST(DirectSolver, TwoInTwoThreadsDoNotDisturbEachOther) {
   Random random(5);
-  std::vector<System> systems;
+  std::vector<SmallSystem> systems;
   std::vector<Eigen::VectorXd> rights;
   for (int k = 0; k < 2; ++k) {
     systems.push_back(quasi_definite(200, 60, random));
