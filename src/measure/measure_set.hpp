@@ -80,6 +80,7 @@ MeasureSet perivitelline_set();
 MeasureSet flanks_set();
 MeasureSet bending_set();
 MeasureSet projection_set();
+MeasureSet shape_set();
 
 /// All sets; the first is measured in every run.
 std::span<const MeasureSet> measure_sets();

@@ -84,7 +84,7 @@ std::pair<double, double> expected_work(const RunControls& controls, const std::
     const double work = curve->at(end_s(controls, *curve));
     return {work, work};
   }
-  // Steps that lengthen by 15 % each until the longest, and quantiles of the work for each in 136 recorded scenarios.
+  // Steps that lengthen by 15 % each until the longest, and a range of the work for each from 136 recorded scenarios.
   constexpr double growth = 0.15, least_at_rest = 1.3, least = 4, most = 14;
   const double longest_s = longest_step_s(controls), grown_s = std::min(longest_s / growth, controls.end_s);
   double steps = controls.end_s / longest_s;

@@ -34,7 +34,7 @@ std::optional<WorkCurve> builtin_curve(const Scenario& scenario);
 /// Curve of a finished run of a scenario of this name in a directory; empty if there is none.
 std::optional<WorkCurve> curve_of_run(const std::filesystem::path& directory, const Scenario& scenario);
 
-/// Least and most work of a run that has not begun. They are equal by a curve; else one run in ten is below, one above.
+/// Least and most work of a run that has not begun. They are equal by a curve; else about half of all runs lie between.
 std::pair<double, double> expected_work(const RunControls& controls, const std::optional<WorkCurve>& curve);
 
 /// Remaining wall time of a run under way.
