@@ -33,7 +33,7 @@ class Obstacle {
 
   /// Return the obstacle for the tissue after a division.
   [[nodiscard]] virtual std::unique_ptr<Obstacle> after_division(const Tissue& tissue,
-                                                                 const Division& division) const = 0;
+                                                                 const TissueChange& change) const = 0;
 };
 
 /// Nodes of all obstacles of a model, obstacle by obstacle: the layout of State::obstacle_forces and on_obstacle. A
