@@ -62,7 +62,7 @@ class Patch {
 /// Return a point of the polygon on one level, as a mean of free nodes in their order.
 NodeMean nodes_of(const Sheet& sheet, const VertexMean& mean, std::size_t level);
 
-/// Make the mesh of a tissue from its sheet, rest positions of free nodes, and cells. Hanging nodes are made anew.
+/// Make the mesh of a tissue from its sheet, rest positions of free nodes, and cells. Hanging nodes are made again.
 /// Elements get rest shapes from positions.
 void mesh(Tissue& tissue);
 
