@@ -1,11 +1,12 @@
 // Cells of several hexahedra out of a file: lattices on a grid, or prisms over polygons with nodes that may hang.
 #include <algorithm>
+#include <map>
 #include <numeric>
-#include <optional>
 
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/lattice.hpp"
 #include "tissue/mesh_faces.hpp"
+#include "tissue/mesher.hpp"
 #include "tissue/polygon_cell.hpp"
 
 namespace plica {
@@ -129,8 +130,94 @@ void set_corners(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std:
   }
 }
 
+// Makes the sheet of a tissue whose elements are given: vertices stand above basal nodes.
+class SheetOfElements {
+ public:
+  explicit SheetOfElements(const Tissue& tissue) : tissue_(tissue) {}
+
+  void add(const Cell& cell, const PolygonChains& chains) {
+    above_ = nodes_above(tissue_, cell);
+    Polygon& polygon = sheet_.cells.emplace_back();
+    std::map<NodeId, OutlinePlace> places;  // of free nodes
+    int side = 0;
+    for (const auto& chain : chains.basal) {
+      const double segments = static_cast<double>(chain.size() - 1);
+      for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+        places[chain[i]] = {side, static_cast<double>(i) / segments};
+        polygon.ring.push_back({vertex_of(chain[i]), {}, places[chain[i]].at});
+      }
+      ++side;
+    }
+    const std::size_t levels = sheet_.vertices[polygon.ring.front().vertex.index()].nodes.size() - 1,
+                      begin = cell.first_element.index();
+    for (std::size_t e = begin; e < begin + static_cast<std::size_t>(cell.element_count) / levels; ++e) {
+      OutlineQuad& quad = polygon.quadrilaterals.emplace_back();
+      for (int i = 0; i < 4; ++i) {
+        const NodeId node = tissue_.elements[e][i];
+        if (node.index() < tissue_.free_node_count() && !places.contains(node)) {
+          places[node] = {-1, 0, static_cast<int>(polygon.inner.size())};
+          polygon.inner.push_back(vertex_of(node));
+        }
+        quad[i] = place_of(node, static_cast<int>(cell.sides()), places);
+      }
+    }
+  }
+
+  Sheet sheet() {
+    sheet_.connect();
+    return std::move(sheet_);
+  }
+
+ private:
+  VertexId vertex_of(NodeId base) {
+    std::vector<NodeId> nodes = {base};
+    for (auto next = above_.find(base); next != above_.end() && nodes.size() <= above_.size();
+         next = above_.find(next->second))
+      nodes.push_back(next->second);
+    const auto [known, is_new] = vertices_.try_emplace({base, nodes.back()}, VertexId(sheet_.vertices.size()));
+    if (is_new) sheet_.vertices.push_back({std::move(nodes)});
+    return known->second;
+  }
+
+  // A free node's place; that midway between two corners; else the middle.
+  [[nodiscard]] OutlinePlace place_of(NodeId node, int sides, const std::map<NodeId, OutlinePlace>& places) const {
+    if (const auto known = places.find(node); known != places.end()) return known->second;
+    const NodeMean& mean = tissue_.hanging[node.index() - tissue_.free_node_count()];
+    const auto one = places.find(mean.front().first), other = places.find(mean.back().first);
+    if (mean.size() != 2 || one == places.end() || other == places.end()) return {};
+    const int first = one->second.wall, second = other->second.wall;
+    return {(first + 1) % sides == second ? first : second, 0.5};
+  }
+
+  const Tissue& tissue_;
+  Sheet sheet_;
+  std::map<NodeId, NodeId> above_;                          // in the present cell
+  std::map<std::pair<NodeId, NodeId>, VertexId> vertices_;  // by base and apex
+};
+
+// Whether the mesh of the sheet would be the given one, with cells of kites where they have a node within.
+bool is_mesh_of_sheet(const Tissue& tissue) {
+  Tissue again = tissue;
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+    const Polygon& polygon = tissue.sheet.cells[c];
+    const std::size_t begin = tissue.cells[c].first_element.index(),
+                      count = static_cast<std::size_t>(tissue.cells[c].element_count);
+    const bool hangs = std::ranges::any_of(std::span(tissue.elements).subspan(begin, count), [&](const auto& nodes) {
+      return !std::ranges::all_of(nodes, [&](NodeId node) { return node.is_among(tissue.free_node_count()); });
+    });
+    if (polygon.inner.size() > (hangs ? 0 : 1) || element_count(tissue.sheet, CellId(c)) != count) return false;
+    set_element_rest_shapes(again, CellId(c));
+  }
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
+    const HexPoints &one = tissue.element_rest_shape[e], &other = again.element_rest_shape[e];
+    for (int i = 0; i < 8; ++i)
+      if (!((one[i] - other[i]).norm() <= hanging_tolerance * (one[6] - one[0]).norm())) return false;
+  }
+  return true;
+}
+
 void add_cell(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces, std::size_t c,
-              Cell cell, Tissue& tissue) {
+              Cell cell, SheetOfElements& sheet, Tissue& tissue) {
   const CellId id(c);
   const std::size_t begin = sorted.first[c], end = sorted.first[c + 1], basal = tissue.basal_facets.size(),
                     apical = tissue.apical_facets.size();
@@ -147,53 +234,9 @@ void add_cell(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const M
         "seen from the apical side, then the apical ones above them; the first four nodes of each hexahedron are basal",
         cell_at(mesh, sorted, c));
   set_polygon_edges(*chains, tissue.rest_positions, cell);
+  sheet.add(cell, *chains);
   for (const NodeId corner : cell.corners) cell.rest_shape.push_back(tissue.rest_positions[corner.index()]);
   tissue.cells.push_back(std::move(cell));
-}
-
-// The quadrilaterals of a cell of one layer whose nodes are corners and middles of edges, as prisms by diagonals have.
-std::optional<std::vector<OutlineQuad>> outline_quads(const Tissue& tissue, const Cell& cell) {
-  const auto corners = cell.basal_corners();
-  const auto wall_from = [&](NodeId node) {
-    const auto found = std::ranges::find(corners, node);
-    return found == corners.end() ? std::nullopt : std::optional(static_cast<int>(found - corners.begin()));
-  };
-  const auto place_of = [&](NodeId node) -> std::optional<OutlinePlace> {
-    if (const auto wall = wall_from(node)) return OutlinePlace{*wall, 0};
-    if (node.index() < tissue.free_node_count()) return std::nullopt;
-    const NodeMean& mean = tissue.hanging[node.index() - tissue.free_node_count()];
-    const auto one = wall_from(mean.front().first), other = wall_from(mean.back().first);
-    const int sides = static_cast<int>(cell.sides());
-    if (mean.size() != 2 || !one || !other) return std::nullopt;
-    if ((*one + 1) % sides == *other) return OutlinePlace{*one, 0.5};
-    if ((*other + 1) % sides == *one) return OutlinePlace{*other, 0.5};
-    return std::nullopt;
-  };
-  std::vector<OutlineQuad> quads;
-  const std::size_t begin = cell.first_element.index();
-  for (std::size_t e = begin; e < begin + cell.element_count; ++e) {
-    OutlineQuad& quad = quads.emplace_back();
-    for (int i = 0; i < 4; ++i) {
-      const std::optional<OutlinePlace> place = place_of(tissue.elements[e][i]);
-      if (!place) return std::nullopt;
-      quad[i] = *place;
-    }
-  }
-  return quads;
-}
-
-// Data for division, if all cells are of that kind. (Of several layers or of kites, other nodes are corners.)
-void set_walls(Tissue& tissue) {
-  std::vector<std::vector<OutlineQuad>> quads;
-  for (const Cell& cell : tissue.cells) {
-    auto of_cell = outline_quads(tissue, cell);
-    if (!of_cell) return;
-    quads.push_back(std::move(*of_cell));
-  }
-  for (std::size_t c = 0; c < quads.size(); ++c) {
-    tissue.cells[c].quadrilaterals = std::move(quads[c]);
-    tissue.cells[c].walls = walls_between_corners(tissue.cells[c]);
-  }
 }
 
 Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces) {
@@ -203,15 +246,18 @@ Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, 
   Tissue tissue;
   tissue.rest_positions = mesh.points;
   set_hanging(mesh, tissue);
+  SheetOfElements sheet(tissue);
   std::size_t next = 0;
   for (std::size_t c = 0; c < count; ++c) {
     Cell cell;
     set_corners(mesh, sorted, c, next, tissue.free_node_count(), cell);
-    add_cell(mesh, sorted, faces, c, std::move(cell), tissue);
+    add_cell(mesh, sorted, faces, c, std::move(cell), sheet, tissue);
   }
   if (next != mesh.groups.corners.size())
     throw MeshError("cell_corners has {} nodes; cell_corner_counts adds up to {}", mesh.groups.corners.size(), next);
-  set_walls(tissue);
+  tissue.sheet = sheet.sheet();
+  if (!is_mesh_of_sheet(tissue))
+    for (Polygon& polygon : tissue.sheet.cells) polygon.quadrilaterals.clear();
   tissue.regions["all"] = CellSet(count, true);
   return tissue;
 }

@@ -1,8 +1,11 @@
 #include "tissue/lattice.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
 
-#include "tissue/polygon_cell.hpp"
+#include "tissue/mesher.hpp"
 
 namespace plica {
 namespace {
@@ -76,28 +79,57 @@ void set_lines(const CellLattice& lattice, Cell& cell) {
   for (int e = 8; e < 12; ++e) cell.lines.push_back({cell.edges[e], 1});
 }
 
-void set_walls(const Vectors& rest_positions, Cell& cell) {
-  for (const NodeId corner : cell.corners) cell.rest_shape.push_back(rest_positions[corner.index()]);
-  if (cell.element_count > 1) return;
-  cell.quadrilaterals = {{{{0, 0}, {1, 0}, {2, 0}, {3, 0}}}};
-  cell.walls = walls_between_corners(cell);
+// A place on a side as a multiple of 2^-32, so that places from either end are the same.
+double place(int part, int parts) {
+  constexpr double unit = 1.0 / (std::int64_t{1} << 32);
+  return unit * std::round(static_cast<double>(part) / parts / unit);
 }
 
-// Calls take(nodes of the element, w) for each element of the cell, u fastest.
-template <class Take>
-void for_elements(const CellLattice& lattice, const Take& take) {
-  const auto [nu, nv, nw] = lattice.elements;
-  for (int w = 0; w < nw; ++w)
-    for (int v = 0; v < nv; ++v)
-      for (int u = 0; u < nu; ++u) {
-        std::array<NodeId, 8> element;
-        for (int i = 0; i < 8; ++i) {
-          const Vec3& r = hex_reference_nodes[i];
-          element[i] = lattice.node(u + (r.x() > 0), v + (r.y() > 0), w + (r.z() > 0));
-        }
-        take(element, w);
+// Makes the polygons of lattices, whose vertices are nodes above each other.
+class SheetOfLattices {
+ public:
+  void add(const CellLattice& lattice) {
+    const auto [nu, nv, nw] = lattice.elements;
+    Polygon& polygon = sheet_.cells.emplace_back();
+    polygon.has_basal = lattice.has_basal;
+    polygon.has_apical = lattice.has_apical;
+    std::map<std::pair<int, int>, OutlinePlace> places;
+    const auto add_side = [&](int side, int u, int v, int du, int dv, int parts) {
+      for (int part = 0; part < parts; ++part, u += du, v += dv) {
+        polygon.ring.push_back({vertex_of(lattice, u, v), {}, place(part, parts)});
+        places[{u, v}] = {side, polygon.ring.back().at};
       }
-}
+    };
+    add_side(0, 0, 0, 1, 0, nu), add_side(1, nu, 0, 0, 1, nv), add_side(2, nu, nv, -1, 0, nu);
+    add_side(3, 0, nv, 0, -1, nv);
+    for (int v = 1; v < nv; ++v)
+      for (int u = 1; u < nu; ++u) {
+        places[{u, v}] = {-1, 0, static_cast<int>(polygon.inner.size())};
+        polygon.inner.push_back(vertex_of(lattice, u, v));
+      }
+    for (int v = 0; v < nv; ++v)
+      for (int u = 0; u < nu; ++u)
+        polygon.quadrilaterals.push_back(
+            {places.at({u, v}), places.at({u + 1, v}), places.at({u + 1, v + 1}), places.at({u, v + 1})});
+  }
+
+  Sheet sheet() {
+    sheet_.connect();
+    return std::move(sheet_);
+  }
+
+ private:
+  VertexId vertex_of(const CellLattice& lattice, int u, int v) {
+    std::vector<NodeId> nodes;
+    for (int w = 0; w <= lattice.elements[2]; ++w) nodes.push_back(lattice.node(u, v, w));
+    const auto [known, is_new] = vertices_.try_emplace({nodes.front(), nodes.back()}, VertexId(sheet_.vertices.size()));
+    if (is_new) sheet_.vertices.push_back({std::move(nodes)});
+    return known->second;
+  }
+
+  Sheet sheet_;
+  std::map<std::pair<NodeId, NodeId>, VertexId> vertices_;  // by base and apex
+};
 
 }  // namespace
 
@@ -106,56 +138,21 @@ void set_corners_and_lines(const CellLattice& lattice, const Vectors& rest_posit
   set_lines(lattice, cell);
 }
 
-void add_element(const std::array<NodeId, 8>& element, CellId id, bool is_basal, bool is_apical, Tissue& tissue) {
-  const ElementId element_id(tissue.elements.size());
-  tissue.elements.push_back(element);
-  tissue.element_cell.push_back(id);
-  tissue.element_rest_shape.push_back(gather(tissue.rest_positions, element));
-  if (is_basal) tissue.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id, element_id});
-  if (is_apical) tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id, element_id});
-}
-
-void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue) {
-  for_elements(lattice, [&](const std::array<NodeId, 8>& element, int w) {
-    add_element(element, id, w == 0 && lattice.has_basal, w == lattice.elements[2] - 1 && lattice.has_apical, tissue);
-  });
-}
-
-void number_as_elements_come(std::vector<CellLattice>& cells, Vectors& rest_positions) {
-  std::vector<NodeId> number(rest_positions.size());
-  std::vector<char> has_number(rest_positions.size(), 0);
-  Vectors in_order;
-  in_order.reserve(rest_positions.size());
-  for (const CellLattice& lattice : cells)
-    for_elements(lattice, [&](const std::array<NodeId, 8>& element, int) {
-      for (const NodeId node : element) {
-        if (has_number[node.index()]) continue;
-        has_number[node.index()] = 1;
-        number[node.index()] = NodeId(in_order.size());
-        in_order.push_back(rest_positions[node.index()]);
-      }
-    });
-  for (CellLattice& lattice : cells)
-    for (NodeId& node : lattice.nodes) node = number[node.index()];
-  rest_positions = std::move(in_order);
-}
-
 Tissue tissue_from_lattices(const std::vector<CellLattice>& cells, Vectors rest_positions) {
   Tissue tissue;
   tissue.rest_positions = std::move(rest_positions);
-  tissue.cells.reserve(cells.size());
+  SheetOfLattices sheet;
   for (const CellLattice& lattice : cells) {
-    Cell cell;
-    cell.first_element = ElementId(tissue.elements.size());
-    cell.element_count = lattice.elements[0] * lattice.elements[1] * lattice.elements[2];
+    sheet.add(lattice);
+    Cell& cell = tissue.cells.emplace_back();
     cell.grid_place = lattice.grid_place;
     cell.is_of_grid = true;
-    set_corners_and_lines(lattice, tissue.rest_positions, cell);
-    set_walls(tissue.rest_positions, cell);
     cell.lineage.id = tissue.next_cell_id++;
-    add_elements_and_facets(lattice, CellId(tissue.cells.size()), tissue);
-    tissue.cells.push_back(std::move(cell));
+    set_corners_and_lines(lattice, tissue.rest_positions, cell);
+    for (const NodeId corner : cell.corners) cell.rest_shape.push_back(tissue.rest_positions[corner.index()]);
   }
+  tissue.sheet = sheet.sheet();
+  mesh(tissue);
   tissue.regions["all"] = CellSet(tissue.cells.size(), true);
   return tissue;
 }
