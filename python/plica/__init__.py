@@ -67,11 +67,8 @@ __all__ = [
     "posterior",
     "render",
     "reproduce",
-<<<<<<< HEAD
+    "studio",
     "tissue_of_labels",
     "tissue_of_monolayer",
-=======
-    "studio",
->>>>>>> wt-studio
     "verdict",
 ]
