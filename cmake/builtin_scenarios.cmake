@@ -20,8 +20,9 @@ foreach(file ${table_files})
   string(APPEND tables "    {\"${name}\", {${name}, sizeof ${name}}},\n")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
 endforeach()
-# Experiments with their scenarios and parameter samples.
+# Experiments with their scenarios and parameter samples; and the work of built-in scenarios.
 file(GLOB experiment_files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/scenarios
+  ${PROJECT_SOURCE_DIR}/scenarios/work.csv
   ${PROJECT_SOURCE_DIR}/scenarios/living/*.toml ${PROJECT_SOURCE_DIR}/scenarios/living/*.csv
   ${PROJECT_SOURCE_DIR}/scenarios/paper/*.toml ${PROJECT_SOURCE_DIR}/scenarios/paper/*.csv)
 set(files "")

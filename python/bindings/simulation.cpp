@@ -6,7 +6,9 @@
 #include <nanobind/stl/vector.h>
 #include <pthread.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "arrays.hpp"
 #include "core/threads.hpp"
@@ -17,6 +19,7 @@
 #include "measure/cells.hpp"
 #include "mechanics/energy.hpp"
 #include "record/checkpoint.hpp"
+#include "record/time_left.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
 #include "simulation/run_warnings.hpp"
@@ -228,6 +231,9 @@ void bind_simulation(nb::module_& module) {
   const auto of_tissue = [looks](auto take) {
     return looks([take](const Simulation& s) { return take(s.model().tissue); });
   };
+  nb::class_<TimeLeft>(module, "TimeLeft")
+      .def("add", &TimeLeft::add, nb::arg("elapsed_s"), nb::arg("time_s"), nb::arg("fastest_um_per_s"))
+      .def_prop_ro("text", &TimeLeft::text);
   nb::class_<S>(module, "Simulation")
       .def(nb::init<const CheckedScenario&, int>(), nb::arg("scenario"), nb::arg("threads"))
       .def(nb::init<const CheckedScenario&, int, const nb::bytes&>(), nb::arg("scenario"), nb::arg("threads"),
@@ -248,6 +254,16 @@ void bind_simulation(nb::module_& module) {
       .def_prop_ro("failure", looks([](const Simulation& s) { return s.failure(); }))
       .def_prop_ro("time_s", looks([](const Simulation& s) { return s.time_s(); }))
       .def_prop_ro("end_s", looks([](const Simulation& s) { return s.controls().end_s; }))
+      .def(
+          "time_left",
+          [](S& self, double until_s) {
+            return self.with([&](const Simulation& s) {
+              RunControls controls = s.controls();
+              controls.end_s = std::min(controls.end_s, until_s);
+              return TimeLeft(std::move(controls), builtin_curve(self.scenario()), s.time_s());
+            });
+          },
+          nb::arg("until_s"))
       .def_prop_ro("steps", looks([](const Simulation& s) { return s.steps(); }))
       .def_prop_ro("divisions", looks([](const Simulation& s) { return s.divisions(); }))
       .def_prop_ro("computing_s", looks([](const Simulation& s) { return s.computing_s(); }))

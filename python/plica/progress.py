@@ -5,6 +5,8 @@ import sys
 import time
 from typing import Any, Optional
 
+from . import _core
+
 
 def moment(time_s: float) -> str:
     """Return a time in the unit that shows it."""
@@ -14,9 +16,10 @@ def moment(time_s: float) -> str:
 class Progress:
     """Progress bar: by tqdm if installed, else one line on the terminal."""
 
-    def __init__(self, end_s: float) -> None:
+    def __init__(self, end_s: float, time_left: _core.TimeLeft) -> None:
         self.end_min = end_s / 60
-        self.last = 0.0
+        self.time_left = time_left
+        self.start, self.last = time.monotonic(), 0.0
         self.bar: Any = None
         try:
             from tqdm.auto import tqdm
@@ -26,14 +29,17 @@ class Progress:
             pass
 
     def show(self, time_s: float, measures: dict[str, Optional[float]]) -> None:
+        self.time_left.add(time.monotonic() - self.start, time_s, measures["max_node_speed_um_per_s"] or 0)
         minutes, depth = time_s / 60, measures.get("furrow_depth_um")
         told = f"displacement {measures['max_displacement_um']:.1f} µm" if depth is None else f"depth {depth:.1f} µm"
+        if left := self.time_left.text:
+            told += f", {left}"
         if self.bar is not None:
             self.bar.set_postfix_str(told, refresh=False)
             self.bar.update(minutes - self.bar.n)
         elif time.monotonic() - self.last > 0.1:
             self.last = time.monotonic()
-            sys.stderr.write(f"\r{minutes:6.2f} of {self.end_min:.2f} min  {told}  ")
+            sys.stderr.write(f"\r{minutes:6.2f} of {self.end_min:.2f} min  {told}\x1b[K")
             sys.stderr.flush()
 
     def close(self) -> None:

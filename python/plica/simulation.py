@@ -238,7 +238,7 @@ class Simulation:
             raise ValueError("overwrite and resume require a results directory; set out")
         if out is not None and not self._begin_record(path_of(out, "out"), overwrite, resume):
             return open_run(out)
-        bar = Progress(min(end_s, self._core.end_s)) if progress else None
+        bar = Progress(min(end_s, self._core.end_s), self._core.time_left(end_s)) if progress else None
         try:
             while (step := self._step(end_s)) is not None:
                 if bar is not None:

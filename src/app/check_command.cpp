@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -13,9 +12,10 @@
 #include "core/files.hpp"
 #include "core/threads.hpp"
 #include "core/words.hpp"
+#include "record/time_left.hpp"
 #include "scenario/advice.hpp"
 #include "scenario/print.hpp"
-#include "scenario/setup.hpp"
+#include "simulation/simulation.hpp"
 #include "study/run_study.hpp"
 
 namespace plica {
@@ -60,27 +60,44 @@ void check_study(const StudyInput& input, int threads) {
              bytes_text(found.bytes_a_run * runs));
 }
 
+// Note how long a run takes: by its work, and by what that of ten steps, or of those within three seconds, takes here.
+void estimate_time(Simulation simulation, const std::optional<WorkCurve>& curve) {
+  constexpr double enough_s = 3, too_long_s = 10;
+  const LiveLine clock(true);
+  simulation.stop_when([&] { return clock.elapsed_s() > too_long_s; });
+  double work = 0;
+  while (simulation.steps() < 10 && clock.elapsed_s() < enough_s && simulation.step()) {
+    const Observation& row = simulation.measures();
+    work += work_of_step(row["newton_iterations"], row["linear_iterations"]);
+  }
+  if (work == 0) return;
+  const auto [least, most] = expected_work(simulation.controls(), curve);
+  const double unit_s = clock.elapsed_s() / work;
+  const std::string from = about(unit_s * least), to = about(unit_s * most);
+  fmt::print(stderr, "note: a run takes {}\n",
+             from == to ? to : fmt::format("between {} and {}, very roughly", from, to));
+}
+
 }  // namespace
 
 void add_check_command(CLI::App& app, int&) {
   CLI::App* command = app.add_subcommand(
-      "check", "validate a scenario and print it with all defaults; or validate a study and estimate its cost");
+      "check", "validate a scenario or study and estimate its cost; print a scenario with all defaults");
   auto options = std::make_shared<ScenarioOptions>();
   auto threads = std::make_shared<int>(0);
   options->add_to(*command);
   add_threads_option(*command, *threads);
   command->footer("Example: plica check my.toml --set embryo.elements_per_cell=[2,2,2]");
   command->callback([options, threads] {
-    if (*threads > 0) omp_set_num_threads(*threads);
     if (const std::optional<StudyInput> study = study_in(*options)) return check_study(*study, *threads);
     const Scenario scenario = options->load();
     std::optional<DelayedNotice> notice(std::in_place);
-    const auto model = make_model(scenario);
-    (void)make_measure_plan(scenario, *model);
-    (void)make_solved_side(scenario, *model);
+    Simulation simulation(scenario);
     notice.reset();
+    use_threads(*threads, simulation.model().tissue.elements.size(), options->name_or_path);
     fmt::print("{}", resolved_toml(scenario));
-    for (const std::string& line : advice(scenario, *model)) fmt::print(stderr, "{}\n", line);
+    for (const std::string& line : advice(scenario, simulation.model())) fmt::print(stderr, "{}\n", line);
+    estimate_time(std::move(simulation), builtin_curve(scenario));
   });
 }
 

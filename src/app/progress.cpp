@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <optional>
@@ -57,21 +55,13 @@ void LiveLine::erase() const {
   if (!quiet_ && on_terminal_) fmt::print(stderr, "{}", erased);
 }
 
-// Towards the end of time or, as speeds decay exponentially, towards rest: whichever is nearer.
-double Progress::part_done(const Observation& row) const {
-  double part = row.time_s() / controls_.end_s;
-  const double speed = fastest_node(row), goal = controls_.equilibrium_speed_um_per_s;
-  if (controls_.stop_at_equilibrium && goal > 0 && speed > goal && fastest_um_per_s_ > speed)
-    part = std::max(part, std::log(fastest_um_per_s_ / speed) / std::log(fastest_um_per_s_ / goal));
-  return std::clamp(part, 0.0, 1.0);
-}
-
 void Progress::show(const Observation& row) {
-  fastest_um_per_s_ = std::max(fastest_um_per_s_, fastest_node(row));
-  const double part = part_done(row);
-  const std::string left = part > 0.02 ? fmt::format("{:.0f} s left", line_.elapsed_s() * (1 - part) / part) : "";
+  time_left_.add(line_.elapsed_s(), row.time_s(), fastest_node(row));
+  const std::optional<double> left_s = time_left_.seconds();
+  const double part = left_s ? line_.elapsed_s() / (line_.elapsed_s() + *left_s) : 0;
   line_.show(fmt::format("{} {:3.0f} %  t = {:>10}  {}  fastest node {:9.3g} um/min  {}", bar(part), 100 * part,
-                         moment(row.time_s()), extent(row), fastest_node(row) / units::um_per_minute, left));
+                         moment(row.time_s()), extent(row), fastest_node(row) / units::um_per_minute,
+                         time_left_.text()));
 }
 
 void RunsProgress::show(std::size_t done, std::size_t lost) {

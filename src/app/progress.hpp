@@ -4,9 +4,10 @@
 #include <chrono>
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include "measure/observation.hpp"
-#include "simulation/controls.hpp"
+#include "record/time_left.hpp"
 
 namespace plica {
 
@@ -28,16 +29,13 @@ class LiveLine {
 
 class Progress {
  public:
-  Progress(const RunControls& controls, bool quiet) : controls_(controls), line_(quiet) {}
+  Progress(TimeLeft time_left, bool quiet) : time_left_(std::move(time_left)), line_(quiet) {}
   void show(const Observation& row);
   void finish() const { line_.erase(); }
 
  private:
-  [[nodiscard]] double part_done(const Observation& row) const;
-
-  const RunControls& controls_;
+  TimeLeft time_left_;
   LiveLine line_;
-  double fastest_um_per_s_ = 0;
 };
 
 /// Number of finished runs and remaining time.

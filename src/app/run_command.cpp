@@ -12,6 +12,7 @@
 #include "core/words.hpp"
 #include "record/archive.hpp"
 #include "record/results.hpp"
+#include "record/time_left.hpp"
 #include "scenario/advice.hpp"
 #include "show/recorded_run.hpp"
 #include "show/report.hpp"
@@ -50,8 +51,9 @@ int exit_status(RunStatus status, bool missed) {
 constexpr double step_patience_s = 3;
 
 // Run to the end, or until an interruption.
-nlohmann::ordered_json simulate(const Scenario& scenario, Simulation& simulation, RecordedRun& record, bool quiet) {
-  Progress progress(simulation.controls(), quiet);
+nlohmann::ordered_json simulate(const Scenario& scenario, Simulation& simulation, RecordedRun& record,
+                                const std::optional<WorkCurve>& curve, bool quiet) {
+  Progress progress({simulation.controls(), curve, simulation.time_s()}, quiet);
   simulation.stop_when([&] { return interrupted_for(step_patience_s) || record.has_failed(); });
   bool has_crossed = false;
   while (simulation.step()) {
@@ -119,10 +121,13 @@ int run_scenario(const RunOptions& options) {
     return exit_done;
   }
   catch_interruptions();
+  // Before they are overwritten.
+  std::optional<WorkCurve> curve = curve_of_run(options.out, scenario);
+  if (!curve) curve = builtin_curve(scenario);
   const nlohmann::ordered_json summary = with_a_way_on([&] {
     if (record.begin() && !options.quiet)
       fmt::print("resuming after step {}, t = {:g} s\n", simulation.steps(), simulation.time_s());
-    return simulate(scenario, simulation, record, options.quiet);
+    return simulate(scenario, simulation, record, curve, options.quiet);
   });
   std::vector<std::string> missed;
   if (simulation.status() == RunStatus::equilibrium || simulation.status() == RunStatus::end_time)

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 
 namespace plica {
@@ -15,6 +16,14 @@ inline std::string duration(double seconds) {
   if (seconds < 100) return fmt::format("{:.1f} s", seconds);
   if (seconds < 6000) return fmt::format("{:.0f} min", seconds / 60);
   return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+/// The same, rounded to what a forecast can say.
+inline std::string about(double seconds) {
+  if (seconds < 10) return "a few seconds";
+  if (seconds < 95) return fmt::format("about {:.0f} s", 5 * std::round(seconds / 5));
+  if (seconds < 5700) return fmt::format("about {:.0f} min", seconds / 60);
+  return fmt::format("about {:.{}f} h", seconds / 3600, seconds < 36'000 ? 1 : 0);
 }
 
 /// Simulated time in the unit that shows it.

@@ -27,7 +27,7 @@ const std::vector<BuiltinScenario>& builtin_scenarios();
 /// in place of a path.
 const std::vector<BuiltinTable>& builtin_tables();
 
-/// Experiment files and their tables, by path below scenarios/ (living/experiments.toml).
+/// Experiment files and their tables, by path below scenarios/ (living/experiments.toml), and work.csv.
 const std::vector<BuiltinFile>& builtin_experiment_files();
 
 inline constexpr std::string_view builtin_table_mark = "builtin:";

@@ -259,10 +259,10 @@ Scenario load_scenario(const ScenarioSource& source, const std::vector<std::stri
   int layer = 0;
   for (const Document& document : documents) {
     read_layer(document.table, {document.source.file, layer++, true}, scenario, input);
+    if (std::ranges::count(names_of(builtin_scenarios()), document.source.file) == 0) continue;
+    scenario.builtin = document.source.file;
     // Expectations of a built-in apply to the unmodified built-in only.
-    const bool changed = &document != &documents.back() || !overrides.empty();
-    if (changed && std::ranges::count(names_of(builtin_scenarios()), document.source.file) > 0)
-      forget_expectations(scenario, input);
+    if (&document != &documents.back() || !overrides.empty()) forget_expectations(scenario, input);
   }
   read_overrides(overrides, layer, scenario, input);
   // A missing base would cause follow-up errors.

@@ -324,6 +324,7 @@ struct GivenAt {
 struct Scenario {
   std::string name;                         // built-in name or file stem
   std::string file;                         // as shown in messages
+  std::string builtin;                      // built-in scenario that this is, or its nearest built-in base
   std::map<std::string, GivenAt> given_at;  // by dotted key or table; not part of the model
   int format = 1;
   std::string title;

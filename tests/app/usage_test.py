@@ -30,6 +30,13 @@ class Usage(CommandLine):
             with self.subTest(name):
                 self.call("check", name)
 
+    def test_check_estimates_the_time_of_a_run(self):
+        for scenario in ("division-demo", "drosophila", self.write(BLOCK)):
+            with self.subTest(scenario):
+                self.assertRegex(self.call("check", scenario).stderr, r"note: a run takes (a few seconds|about \d+ (s|min))\n")
+        endless = self.write(BLOCK.replace("end_s = 0.5", "end_min = 900"))
+        self.assertRegex(self.call("check", endless).stderr, r"note: a run takes between a?.* and about [\d.]+ (s|min|h), very roughly\n")
+
     def test_bad_usage_is_status_2(self):
         scenario = self.write(BLOCK, "small.toml")
         run = ["run", scenario, "--out", self.out]

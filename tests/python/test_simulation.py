@@ -184,6 +184,15 @@ def test_callback_and_progress(sim, capfd):
     assert "depth 0.0 µm" in capfd.readouterr().err
 
 
+def test_time_left_in_words(sim):
+    left = sim._core.time_left(np.inf)
+    assert left.text == ""
+    for _ in range(10):
+        step = sim.step()
+        left.add(10 * step.time_s, step.time_s, step["max_node_speed_um_per_s"])
+    assert left.text.startswith("about ") and left.text.endswith(" left")
+
+
 def test_record_resumes(tmp_path):
     plica.Simulation(scenario()).run(out=tmp_path / "whole")
     plica.Simulation(scenario()).run(out=tmp_path / "parts", until_min=0.4)

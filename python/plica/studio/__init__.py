@@ -68,7 +68,8 @@ def made(scenario: Union[Scenario, str, os.PathLike[str], None], folder: Union[s
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
         lock.seek(0)
-        raise PlicaError(f"{start}: has an open studio, at {lock.read().strip()}; open that, or give another folder") from None
+        raise PlicaError(f"{start}: has an open studio, at {lock.read().strip()}; "
+                         "open that, or give another folder") from None
     # The same address as before, so that a page that is open, or a kept link, finds a restarted studio.
     lock.seek(0)
     earlier = lock.read().strip()

@@ -30,8 +30,8 @@ def active_tables(table: Table) -> list[str]:
 def act(kind: str, table: Table, cells: Sequence[int], at_s: float, strength: float) -> tuple[Changes, str]:
     """Return the changes of a scenario that make an act, and its title.
 
-    cut: the cells lose cortex and contraction. darken: their active forces are multiplied by `strength`. pull: `strength` Pa
-    draw on their apical faces."""
+    cut: the cells lose cortex and contraction. darken: their active forces are multiplied by `strength`. pull:
+    `strength` Pa draw on their apical faces."""
     count = f"{len(cells)} cell{'s' if len(cells) != 1 else ''}"
     if kind == "cut":
         name = free_name("cut", table)

@@ -2,9 +2,9 @@
 from __future__ import annotations
 
 import copy
+import os
 import tomllib
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, Optional
 
 from .. import _core
@@ -102,8 +102,10 @@ class Draft:
         self.history, self.place = [table], 0
 
     @classmethod
-    def of(cls, source: str | Path | Scenario) -> Draft:
-        """Read a built-in scenario, a file or a Scenario. What it expects of its results is left out: it is to be changed."""
+    def of(cls, source: str | os.PathLike[str] | Scenario) -> Draft:
+        """Read a built-in scenario, a file or a Scenario.
+
+        What it expects of its results is left out: it is to be changed."""
         scenario = source if isinstance(source, Scenario) else Scenario(source)
         scenario._require_file("plica.studio")
         name, _, text = scenario._source
@@ -156,7 +158,7 @@ class Draft:
 
 
 def text_of(table: Table, base: str) -> str:
-    """Write a complete scenario as its differences from a built-in one, or whole where differences cannot express it."""
+    """Write a complete scenario as its differences from a built-in one, or whole where these cannot express it."""
     if base:
         short: Table = changed({"format": 1, "base": base}, differences(table, Scenario(base).to_dict()))
         read = Scenario(short).to_dict()

@@ -43,7 +43,8 @@ class FrameFile:
             offset = 0
             while offset + HEAD.size <= size:
                 file.seek(offset)
-                frame = Frame(*HEAD.unpack(file.read(HEAD.size)), offset + HEAD.size)
+                time_s, shape, nodes, cells = HEAD.unpack(file.read(HEAD.size))
+                frame = Frame(time_s, shape, nodes, cells, offset + HEAD.size)
                 if frame.offset + frame.size > size:
                     break  # half written when the server was killed
                 self.frames.append(frame)

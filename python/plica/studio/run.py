@@ -1,7 +1,7 @@
 """A run of the studio: a recorded `plica run` in a thread of its own, whose frames and states are kept.
 
-What is shown is always the run of a scenario file. An act during a run makes another scenario, which differs from a time on;
-its run continues from a state that both share. Steps never end where the user pauses, so a run is bitwise
+What is shown is always the run of a scenario file. An act during a run makes another scenario, which differs from a
+time on; its run continues from a state that both share. Steps never end where the user pauses, so a run is bitwise
 identical to one from the command line."""
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ class StudioRun:
     """Run in a directory of the session. `parent` and `from_s`: the run and the time of the state that it continues."""
 
     def __init__(self, number: int, directory: Path, scenario: Scenario, told: Callable[[], None], *, base: str = "",
-                 title: str = "", parent: Optional[StudioRun] = None, act_s: float = 0.0, threads: Optional[int] = None) -> None:
+                 title: str = "", parent: Optional[StudioRun] = None, act_s: float = 0.0,
+                 threads: Optional[int] = None) -> None:
         self.number, self.directory, self.scenario, self.base, self.title = number, directory, scenario, base, title
         self.parent, self.act_s, self.threads = parent, act_s, threads
         self.results, self.kept = directory / "results", directory / "kept"
@@ -95,8 +96,8 @@ class StudioRun:
 
     def summary(self) -> dict[str, Any]:
         return {"number": self.number, "title": self.title, "status": self.status, "time_s": self.time_s,
-            "end_s": self.end_s,
-                "steps": len(self.rows) - 1 if self.rows else 0, "failure": self.failure, "failed_cell": self.failed_cell,
+                "end_s": self.end_s, "steps": len(self.rows) - 1 if self.rows else 0,
+                "failure": self.failure, "failed_cell": self.failed_cell,
                 "parent": self.parent and self.parent.number, "act_s": self.act_s, "from_s": self.from_s,
                 "notes": self.notes, "running": self.status == "running", "lasting": self.lasting}
 
@@ -181,7 +182,7 @@ class StudioRun:
         return sim
 
     def _continued(self) -> Optional[Simulation]:
-        """Continue the newest kept state from which this scenario takes the same steps as its parent's; None: from rest.
+        """Continue the newest kept state from which this and its parent's scenario take equal steps; None: from rest.
 
         Before the last snapshot at or before the act, steps end on the same times in both scenarios."""
         every_s = float(self.scenario["output.frame_every_s"])
@@ -284,7 +285,7 @@ class StudioRun:
         return [*self._inherited, *((self, i) for i in range(len(self.file.frames)))]
 
     def frame_message(self, want: dict[str, Any]) -> list[bytes]:
-        """Return what the page lacks: the frame it asks for, its shape, and rows of measures. Nothing if all is known."""
+        """Return what the page lacks: the frame it asks for, its shape, rows of measures; nothing if all is known."""
         frames = self.all_frames()
         if not frames:
             return []

@@ -1,7 +1,7 @@
 """The studio's server: one page and one WebSocket, on this machine only.
 
-Every request needs the session's token; its Host must be this machine, and its Origin, where it has one, this server. What a
-page may ask is bounded in size and number."""
+Every request needs the session's token; its Host must be this machine, and its Origin, where it has one, this server.
+What a page may ask is bounded in size and number."""
 from __future__ import annotations
 
 import asyncio
@@ -32,8 +32,8 @@ STATES_APART_S = 0.15
 NAMES = (HOST, "localhost")
 PAGE = Path(__file__).parent / "page.html"
 HEADERS = {
-    "Content-Security-Policy": "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
-                               "connect-src 'self'; base-uri 'none'; form-action 'none'; "
+    "Content-Security-Policy": "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+                               "img-src data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
                                "frame-ancestors http://localhost:* http://127.0.0.1:*",
     "Referrer-Policy": "no-referrer", "X-Content-Type-Options": "nosniff", "Cache-Control": "no-store",
     "Cross-Origin-Resource-Policy": "same-origin",
@@ -45,7 +45,8 @@ def page_text() -> str:
     try:
         html = PAGE.read_text()
     except FileNotFoundError:
-        raise FileError(f"{PAGE}: missing, since plica was built with PLICA_WITH_VIEWER=OFF; build with it, or install a wheel") from None
+        raise FileError(f"{PAGE}: missing, since plica was built with PLICA_WITH_VIEWER=OFF; "
+                        "build with it, or install a wheel") from None
     fields = [{"name": name, "label": field["label"], "unit": "", "on_nodes": field["on_nodes"],
                "scale": field["kind"].replace("_", "-"), "map": field["kind"],
                "low": 0, "high": max(1, len(field["colours"]) - 1) if field["kind"] == "steps" else 1}

@@ -93,7 +93,9 @@ class Rest:
 
 
 class Session:
-    """The studio's state and orders (methods `do_…`). Orders come one at a time; `told` is called after every change."""
+    """The studio's state and orders (methods `do_…`).
+
+    Orders come one at a time; `told` is called after every change."""
 
     def __init__(self, folder: Path, told: Callable[[], None], threads: Optional[int] = None) -> None:
         self.folder, self.told, self.threads = folder.resolve(), told, threads
@@ -405,7 +407,8 @@ class Session:
         """Return a Python script that does the same."""
         text = self.scenario_text(number).replace("\\", "\\\\").replace('"""', '\\"\\"\\"')
         return f'import plica\n\nscenario = plica.Scenario("""\n{text}""")\n' \
-               'run = plica.Simulation(scenario).run(out="results", overwrite=True, progress=True)\nprint(run.summary)\n'
+               'run = plica.Simulation(scenario).run(out="results", overwrite=True, progress=True)\n' \
+               'print(run.summary)\n'
 
     def frame_messages(self, want: Table) -> list[bytes]:
         """Return what a page lacks of a run, or of the tissue at rest (0)."""

@@ -18,7 +18,7 @@ Floats = NDArray[np.float32]
 
 
 def surface(hexahedra: NDArray[np.int32], cell_of: NDArray[np.int32]) -> dict[str, NDArray[np.uint32]]:
-    """Return the facets that bound a tissue, 4 nodes each, their elements, and the edges that part cells, 2 nodes each."""
+    """Return the facets that bound a tissue (4 nodes each), their elements, and the edges between cells (2 nodes)."""
     nodes = int(hexahedra.max()) + 1
     faces = hexahedra[:, FACES].reshape(-1, 4)
     # Three nodes tell a face; as one number they sort ten times as fast.
@@ -46,7 +46,8 @@ def shape_message(sim: Simulation, name: str) -> bytes:
     shell = sim._scenario._core.shell(rest)
     arrays: dict[str, Any] = {
         "elements": sim.hexahedra.astype("u4"), "cell_of_element": sim.hexahedron_cell.astype("u4"),
-        **surface(sim.hexahedra, sim.hexahedron_cell), "cell_id": data["cell_id"].astype("u4"), "rest": rest.astype("f4"),
+        **surface(sim.hexahedra, sim.hexahedron_cell),
+        "cell_id": data["cell_id"].astype("u4"), "rest": rest.astype("f4"),
         **{f"field/{k}": v.astype("f4") for k, v in own.items()},
         **{f"region/{k}": mask.astype("u4") for k, mask in regions.items()},
     }

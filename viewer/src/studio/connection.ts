@@ -1,4 +1,5 @@
-// Connection to the server: orders and their answers, what is looked at, and states that it sends. Reconnects by itself.
+// Connection to the server: orders and their answers, what is looked at, and states that it sends. Reconnects
+// by itself.
 import { type Frame, type Message, type Shape, unpack } from "./messages";
 
 export type Value = string | number | boolean | null | Value[] | { [key: string]: Value };

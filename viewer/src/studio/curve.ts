@@ -41,7 +41,8 @@ export function curveOf(times: number[], activity: number[], end: number, tell: 
   };
   const handle = (i: number): SVGElement => {
     const circle = make("circle", { cx: x(points[i].time), cy: y(points[i].value), r: 6, tabindex: 0, role: "slider",
-      "aria-label": `Point ${i + 1}`, "aria-valuenow": points[i].value, "aria-valuetext": `${number(points[i].time)} s: ${number(points[i].value)}` });
+      "aria-label": `Point ${i + 1}`, "aria-valuenow": points[i].value,
+      "aria-valuetext": `${number(points[i].time)} s: ${number(points[i].value)}` });
     circle.addEventListener("pointerdown", (event) => drag(event as PointerEvent, i));
     circle.addEventListener("keydown", (event) => byKey(event as KeyboardEvent, i));
     return circle;

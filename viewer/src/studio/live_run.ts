@@ -6,10 +6,9 @@ import type { Frame, Message, Numbers, Shape } from "./messages";
 
 function emptyData(name: string): RunData {
   return {
-    name, summary: null, scenario: "", series: "", midline: "", shell: null, axes: [], letters: [], depth_word: "furrow",
-    frames_saved: 0, every: 1, box: { low: [-1, -1, -1],
-      high: [1, 1, 1] }, fields: {}, regions: [], coloured_regions: [],
-    topologies: [], arrays: [],
+    name, summary: null, scenario: "", series: "", midline: "", shell: null, axes: [], letters: [],
+    depth_word: "furrow", frames_saved: 0, every: 1, box: { low: [-1, -1, -1], high: [1, 1, 1] },
+    fields: {}, regions: [], coloured_regions: [], topologies: [], arrays: [],
   };
 }
 
@@ -140,7 +139,8 @@ export class LiveTopology extends Topology {
     const centres = new Float32Array(3 * this.cells);
     this.elementsOfCell.forEach((_, cell) => {
       const nodes = this.nodesOfCell(cell);
-      for (const node of nodes) for (let k = 0; k < 3; ++k) centres[3 * cell + k] += this.rest[3 * node + k] / nodes.length;
+      for (const node of nodes)
+        for (let k = 0; k < 3; ++k) centres[3 * cell + k] += this.rest[3 * node + k] / nodes.length;
     });
     return centres;
   }

@@ -23,7 +23,8 @@ import { ToolsBar } from "./tools_bar";
 const chartsApart = 700; // ms
 const mostCellsWithEdges = 5000;
 const difference: Field = {
-  name: "difference", label: "distance from the run beside, µm", unit: "", on_nodes: true, scale: "from-zero", map: "from_zero", low: 0, high: 1,
+  name: "difference", label: "distance from the run beside, µm", unit: "", on_nodes: true, scale: "from-zero",
+  map: "from_zero", low: 0, high: 1,
 };
 
 class Studio {
@@ -57,7 +58,8 @@ class Studio {
       string[]> };
     this.known = fields;
     this.page = {
-      format: 1, made_by: "", fields: [...fields], maps: { ...maps }, views: [], view_cut_um: 0.01, varied: [], outcomes: null,
+      format: 1, made_by: "", fields: [...fields], maps: { ...maps }, views: [], view_cut_um: 0.01, varied: [],
+      outcomes: null,
       runs: this.runs.map(({ data }) => data),
     };
     const none: View = { name: "", title: "", label: "", sight: [0, 1, 0], up: [0, 0, 1], cut_axis: null };
@@ -166,7 +168,8 @@ class Studio {
   }
 
   private takeShape({ head, arrays }: Message<Shape>): void {
-    if (head.shape.startsWith("0/")) for (const name of this.shapes.keys()) if (name.startsWith("0/")) this.shapes.delete(name);
+    if (head.shape.startsWith("0/"))
+      for (const name of this.shapes.keys()) if (name.startsWith("0/")) this.shapes.delete(name);
     this.shapes.set(head.shape, new LiveTopology(head, arrays));
   }
 
@@ -349,7 +352,9 @@ class Studio {
   }
 
   private async paint(region: string): Promise<void> {
-    if (this.chosen.run !== 0) return this.tell("Regions belong to the tissue at rest; choose At rest under Runs, or act on the selected cells.");
+    if (this.chosen.run !== 0)
+      return this.tell("Regions belong to the tissue at rest; choose At rest under Runs, " +
+        "or act on the selected cells.");
     const begun = performance.now();
     const done = await this.order("paint", { region, ids: [...this.selection] });
     if (!done) return;

@@ -1,5 +1,5 @@
-// Brush and lasso: the cells that are visible at each pixel, drawn once a stroke as numbers, so that only what is seen is
-// painted, and a stroke costs no search.
+// Brush and lasso: the cells that are visible at each pixel, drawn once a stroke as numbers, so that only what is seen
+// is painted, and a stroke costs no search.
 import * as three from "three";
 import type { RunView } from "../run_view";
 

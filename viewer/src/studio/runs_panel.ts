@@ -37,7 +37,8 @@ export class RunsPanel {
     this.state = state;
     this.jobs.textContent = Object.entries(state.jobs).map(([name, what]) => `${name}: ${what}`).join("\n");
     if (shape === this.shape)
-      for (const run of state.runs) this.list.querySelector(`[data-run="${run.number}"] .note`)!.textContent = timeOf(run);
+      for (const run of state.runs)
+        this.list.querySelector(`[data-run="${run.number}"] .note`)!.textContent = timeOf(run);
     else this.rebuild();
     this.shape = shape;
   }

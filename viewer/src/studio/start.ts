@@ -17,7 +17,8 @@ export class Start {
       this.cards,
       element("h2", {}, "Files of this folder"), this.filter, this.files);
     this.filter.addEventListener("input", () => {
-      for (const file of this.files.children) (file as HTMLElement).hidden = !file.textContent!.includes(this.filter.value.trim());
+      for (const file of this.files.children)
+        (file as HTMLElement).hidden = !file.textContent!.includes(this.filter.value.trim());
     });
   }
 
@@ -27,7 +28,9 @@ export class Start {
       string>; files: string[] };
     this.cards.replaceChildren(...Object.entries(scenarios).map(([name, title]) => this.card(name, title)));
     this.files.replaceChildren(...files.map((name) => this.choice("file", name, name)));
-    if (files.length === 0) this.files.textContent = "None. Scenarios (.toml), meshes (.vtu), polygons (.obj, .off, .ply, .vtp) and points (.csv) appear here.";
+    if (files.length === 0)
+      this.files.textContent = "None. Scenarios (.toml), meshes (.vtu), polygons (.obj, .off, .ply, .vtp) " +
+        "and points (.csv) appear here.";
   }
 
   private card(name: string, title: string): HTMLElement {

@@ -56,7 +56,8 @@ export class TimeBar {
     this.go.disabled = this.stepButton.disabled = over;
     this.slider.max = String(state?.time_s ?? 0);
     this.slider.disabled = this.replay.disabled = !state;
-    if (document.activeElement !== this.slider || this.at === null) this.slider.value = String(this.at ?? state?.time_s ?? 0);
+    if (document.activeElement !== this.slider || this.at === null)
+      this.slider.value = String(this.at ?? state?.time_s ?? 0);
     this.text.textContent = timeText(Number(shownS.toPrecision(4)));
     this.slider.setAttribute("aria-valuetext", this.text.textContent);
   }
