@@ -19,10 +19,10 @@ struct FinalShape {
 
 // Final shape of a mother cell: the target of its growth, or its present shape.
 FinalShape final_shape(const Model& model, CellId cell) {
+  const bool bends = cuts_bend(model.tissue, cell);
   for (const Growth& growth : model.growths)
-    if (growth.cell == cell) return {growth.rest_to, growth.target_to, cuts_bend(model.tissue, cell)};
-  return {model.tissue.cells[cell.index()].rest_shape, model.volumes.targets()[cell.index()],
-          cuts_bend(model.tissue, cell)};
+    if (growth.cell == cell) return {growth.rest_to, growth.target_to, bends};
+  return {model.tissue.cells[cell.index()].rest_shape, model.volumes.targets()[cell.index()], bends};
 }
 
 double prism_volume(const PrismCorners& corners) {

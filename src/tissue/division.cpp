@@ -146,9 +146,8 @@ class Cutter {
       Polygon& polygon = sheet_.cells[id.index()];
       const Outline outline(polygon);
       OutlineRing with_stops;
-      for (std::size_t side = 0; side < outline.sides().size(); ++side)
-        for (const Stop& stop : outline.sides()[side])
-          if (stop.at < 1) with_stops.push_back({static_cast<int>(side), stop.at});
+      int side = -1;
+      for (const Stop& stop : polygon.ring) with_stops.push_back({side += stop.at == 0 ? 1 : 0, stop.at});
       polygon.quadrilaterals = best_split(
           corners_of_polygon(outline.sides().size()),
           [&](const auto& split) { return worst_element(id, outline, split); }, with_stops);
@@ -156,14 +155,11 @@ class Cutter {
   }
 
  private:
-  VertexId new_vertex(const VertexMean& place, bool is_sorted) {
+  VertexId new_vertex(const VertexMean& place) {
     Vertex vertex;
     const std::size_t levels = sheet_.vertices[place.front().first.index()].nodes.size();
     for (std::size_t level = 0; level < levels; ++level) {
       NodeMean nodes = nodes_of(sheet_, place, level);
-      if (!is_sorted)
-        for (std::size_t i = 0; i < place.size(); ++i)
-          nodes[i] = {sheet_.vertices[place[i].first.index()].nodes[level], place[i].second};
       for (Vectors* places : {&tissue_.rest_positions, &positions_}) places->push_back(mean_of(nodes, *places));
       change_.new_nodes.push_back(std::move(nodes));
       vertex.nodes.emplace_back(tissue_.rest_positions.size() - 1);
@@ -180,7 +176,7 @@ class Cutter {
     const auto after = std::ranges::find_if(stops, [](const Stop& stop) { return stop.at >= middle; });
     if (after->at == middle) return after->vertex;
     const Stop low = *(after - 1), high = *after;
-    const VertexId vertex = new_vertex({{low.vertex, middle}, {high.vertex, middle}}, false);
+    const VertexId vertex = new_vertex({{low.vertex, middle}, {high.vertex, middle}});
     const auto nodes = [&](VertexId one) { return std::span<const NodeId>(sheet_.vertices[one.index()].nodes); };
     for (std::size_t level = 0; level < nodes(vertex).size(); ++level)
       change_.node_midway.emplace(std::minmax(nodes(low.vertex)[level], nodes(high.vertex)[level]),
@@ -208,7 +204,7 @@ class Cutter {
     for (const double at : lines) {
       if (at == 0 || at == 1) continue;
       const Patch patch(outline, mother.quadrilaterals.front());
-      inner.push_back({new_vertex(along_v ? patch.point(middle, at) : patch.point(at, middle), true), {}, at});
+      inner.push_back({new_vertex(along_v ? patch.point(middle, at) : patch.point(at, middle)), {}, at});
     }
     if (!along_v) {
       std::ranges::reverse(inner);
@@ -248,24 +244,19 @@ class Cutter {
   // Worst element of the cell with this split, in the reference state and at present.
   [[nodiscard]] double worst_element(CellId id, const Outline& outline, const std::vector<OutlineQuad>& split) const {
     double worst = 1;
-    const std::size_t levels = sheet_.level_count(id);
     for (const OutlineQuad& quadrilateral : split) {
       const Patch patch(outline, quadrilateral);
       worst = std::min(worst, hex_scaled_jacobian(part_over(rest_prism(tissue_.cells[id.index()]), quadrilateral)));
-      const std::vector<double> us = patch.lines(0), vs = patch.lines(1);
-      const auto at = [&](double u, double v, std::size_t level) {
-        return mean_of(nodes_of(sheet_, patch.point(u, v), level), positions_);
-      };
-      for (std::size_t level = 0; level < levels; ++level)
-        for (std::size_t v = 1; v < vs.size(); ++v)
-          for (std::size_t u = 1; u < us.size(); ++u) {
-            HexPoints points;
-            for (int i = 0; i < 8; ++i)
-              points[i] =
-                  at(us[u - (hex_reference_nodes[i].x() > 0 ? 0 : 1)], vs[v - (hex_reference_nodes[i].y() > 0 ? 0 : 1)],
-                     level + (hex_reference_nodes[i].z() > 0 ? 1 : 0));
-            worst = std::min(worst, hex_scaled_jacobian(points));
+      for (std::size_t level = 0; level < sheet_.level_count(id); ++level)
+        for (const auto& part : patch.elements()) {
+          HexPoints points;
+          for (int i = 0; i < 8; ++i) {
+            const Vec3& r = hex_reference_nodes[i];
+            const VertexMean place = patch.point(part[r.x() > 0][0], part[r.y() > 0][1]);
+            points[i] = mean_of(nodes_of(sheet_, place, level + (r.z() > 0)), positions_);
           }
+          worst = std::min(worst, hex_scaled_jacobian(points));
+        }
     }
     return worst;
   }
@@ -322,8 +313,7 @@ TissueChange divide(Tissue& tissue, std::span<const CellCut> cuts, double time_s
 void complete(Tissue& tissue, const TissueChange& change) {
   mesh(tissue);
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) set_element_rest_shapes(tissue, CellId(c));
-  follow(change, tissue.regions);
-  follow(change, tissue.cell_arrays);
+  follow(change, tissue);
 }
 
 }  // namespace plica

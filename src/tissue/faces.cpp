@@ -159,11 +159,8 @@ std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue) {
 }
 
 std::optional<CellId> cell_between_layers(const Tissue& tissue) {
-  CellSet apical(tissue.cells.size(), false), basal = apical;
-  for (const Facet& facet : tissue.apical_facets) apical[facet.cell.index()] = true;
-  for (const Facet& facet : tissue.basal_facets) basal[facet.cell.index()] = true;
   for (std::size_t c = 0; c < tissue.cells.size(); ++c)
-    if (!apical[c] || !basal[c]) return CellId(c);
+    if (!tissue.sheet.cells[c].has_apical || !tissue.sheet.cells[c].has_basal) return CellId(c);
   return std::nullopt;
 }
 

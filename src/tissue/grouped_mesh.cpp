@@ -130,70 +130,37 @@ void set_corners(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std:
   }
 }
 
-// Makes the sheet of a tissue whose elements are given: vertices stand above basal nodes.
-class SheetOfElements {
- public:
-  explicit SheetOfElements(const Tissue& tissue) : tissue_(tissue) {}
-
-  void add(const Cell& cell, const PolygonChains& chains) {
-    above_ = nodes_above(tissue_, cell);
-    Polygon& polygon = sheet_.cells.emplace_back();
-    std::map<NodeId, OutlinePlace> places;  // of free nodes
-    int side = 0;
-    for (const auto& chain : chains.basal) {
-      const double segments = static_cast<double>(chain.size() - 1);
-      for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
-        places[chain[i]] = {side, static_cast<double>(i) / segments};
-        polygon.ring.push_back({vertex_of(chain[i]), {}, places[chain[i]].at});
-      }
-      ++side;
-    }
-    const std::size_t levels = sheet_.vertices[polygon.ring.front().vertex.index()].nodes.size() - 1,
-                      begin = cell.first_element.index();
-    for (std::size_t e = begin; e < begin + static_cast<std::size_t>(cell.element_count) / levels; ++e) {
-      OutlineQuad& quad = polygon.quadrilaterals.emplace_back();
-      for (int i = 0; i < 4; ++i) {
-        const NodeId node = tissue_.elements[e][i];
-        if (node.index() < tissue_.free_node_count() && !places.contains(node)) {
-          places[node] = {-1, 0, static_cast<int>(polygon.inner.size())};
-          polygon.inner.push_back(vertex_of(node));
-        }
-        quad[i] = place_of(node, static_cast<int>(cell.sides()), places);
-      }
-    }
-  }
-
-  Sheet sheet() {
-    sheet_.connect();
-    return std::move(sheet_);
-  }
-
- private:
-  VertexId vertex_of(NodeId base) {
-    std::vector<NodeId> nodes = {base};
-    for (auto next = above_.find(base); next != above_.end() && nodes.size() <= above_.size();
-         next = above_.find(next->second))
+// Adds the polygon of a cell whose elements are given. Basal nodes that hang are midway between two corners, or in the
+// middle.
+void add_polygon(const Tissue& tissue, const Cell& cell, const PolygonChains& chains, SheetOfColumns& sheet) {
+  const std::map<NodeId, NodeId> above = nodes_above(tissue, cell);
+  const auto column = [&](NodeId base) {
+    SheetOfColumns::Column nodes = {base};
+    for (auto next = above.find(base); next != above.end() && nodes.size() <= above.size();
+         next = above.find(next->second))
       nodes.push_back(next->second);
-    const auto [known, is_new] = vertices_.try_emplace({base, nodes.back()}, VertexId(sheet_.vertices.size()));
-    if (is_new) sheet_.vertices.push_back({std::move(nodes)});
-    return known->second;
+    return nodes;
+  };
+  const std::span<const NodeId> corners = cell.basal_corners();
+  const auto place_of = [&](NodeId node) -> OutlinePlace {
+    if (node.is_among(tissue.free_node_count())) return sheet.place(column(node));
+    const NodeMean& mean = tissue.hanging[node.index() - tissue.free_node_count()];
+    for (std::size_t i = 0; i < corners.size() && mean.size() == 2; ++i)
+      if (std::minmax(mean[0].first, mean[1].first) == std::minmax(corners[i], corners[(i + 1) % corners.size()]))
+        return {static_cast<int>(i), 0.5};
+    return {};
+  };
+  Polygon& polygon = sheet.add_cell();
+  for (const auto& chain : chains.basal) {
+    std::vector<SheetOfColumns::Column> stops;
+    for (const NodeId node : std::span(chain).first(chain.size() - 1)) stops.push_back(column(node));
+    sheet.add_side(stops);
   }
-
-  // A free node's place; that midway between two corners; else the middle.
-  [[nodiscard]] OutlinePlace place_of(NodeId node, int sides, const std::map<NodeId, OutlinePlace>& places) const {
-    if (const auto known = places.find(node); known != places.end()) return known->second;
-    const NodeMean& mean = tissue_.hanging[node.index() - tissue_.free_node_count()];
-    const auto one = places.find(mean.front().first), other = places.find(mean.back().first);
-    if (mean.size() != 2 || one == places.end() || other == places.end()) return {};
-    const int first = one->second.wall, second = other->second.wall;
-    return {(first + 1) % sides == second ? first : second, 0.5};
-  }
-
-  const Tissue& tissue_;
-  Sheet sheet_;
-  std::map<NodeId, NodeId> above_;                          // in the present cell
-  std::map<std::pair<NodeId, NodeId>, VertexId> vertices_;  // by base and apex
-};
+  const std::size_t levels = column(corners[0]).size() - 1,
+                    count = static_cast<std::size_t>(cell.element_count) / levels;
+  for (const auto& nodes : std::span(tissue.elements).subspan(cell.first_element.index(), count))
+    polygon.quadrilaterals.push_back({place_of(nodes[0]), place_of(nodes[1]), place_of(nodes[2]), place_of(nodes[3])});
+}
 
 // Whether the mesh of the sheet would be the given one, with cells of kites where they have a node within.
 bool is_mesh_of_sheet(const Tissue& tissue) {
@@ -217,7 +184,7 @@ bool is_mesh_of_sheet(const Tissue& tissue) {
 }
 
 void add_cell(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces, std::size_t c,
-              Cell cell, SheetOfElements& sheet, Tissue& tissue) {
+              Cell cell, SheetOfColumns& sheet, Tissue& tissue) {
   const CellId id(c);
   const std::size_t begin = sorted.first[c], end = sorted.first[c + 1], basal = tissue.basal_facets.size(),
                     apical = tissue.apical_facets.size();
@@ -234,7 +201,7 @@ void add_cell(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const M
         "seen from the apical side, then the apical ones above them; the first four nodes of each hexahedron are basal",
         cell_at(mesh, sorted, c));
   set_polygon_edges(*chains, tissue.rest_positions, cell);
-  sheet.add(cell, *chains);
+  add_polygon(tissue, cell, *chains, sheet);
   for (const NodeId corner : cell.corners) cell.rest_shape.push_back(tissue.rest_positions[corner.index()]);
   tissue.cells.push_back(std::move(cell));
 }
@@ -246,7 +213,7 @@ Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, 
   Tissue tissue;
   tissue.rest_positions = mesh.points;
   set_hanging(mesh, tissue);
-  SheetOfElements sheet(tissue);
+  SheetOfColumns sheet;
   std::size_t next = 0;
   for (std::size_t c = 0; c < count; ++c) {
     Cell cell;

@@ -1,8 +1,6 @@
 #include "tissue/lattice.hpp"
 
 #include <cmath>
-#include <cstdint>
-#include <map>
 #include <utility>
 
 #include "tissue/mesher.hpp"
@@ -79,57 +77,26 @@ void set_lines(const CellLattice& lattice, Cell& cell) {
   for (int e = 8; e < 12; ++e) cell.lines.push_back({cell.edges[e], 1});
 }
 
-// A place on a side as a multiple of 2^-32, so that places from either end are the same.
-double place(int part, int parts) {
-  constexpr double unit = 1.0 / (std::int64_t{1} << 32);
-  return unit * std::round(static_cast<double>(part) / parts / unit);
-}
-
-// Makes the polygons of lattices, whose vertices are nodes above each other.
-class SheetOfLattices {
- public:
-  void add(const CellLattice& lattice) {
-    const auto [nu, nv, nw] = lattice.elements;
-    Polygon& polygon = sheet_.cells.emplace_back();
-    polygon.has_basal = lattice.has_basal;
-    polygon.has_apical = lattice.has_apical;
-    std::map<std::pair<int, int>, OutlinePlace> places;
-    const auto add_side = [&](int side, int u, int v, int du, int dv, int parts) {
-      for (int part = 0; part < parts; ++part, u += du, v += dv) {
-        polygon.ring.push_back({vertex_of(lattice, u, v), {}, place(part, parts)});
-        places[{u, v}] = {side, polygon.ring.back().at};
-      }
-    };
-    add_side(0, 0, 0, 1, 0, nu), add_side(1, nu, 0, 0, 1, nv), add_side(2, nu, nv, -1, 0, nu);
-    add_side(3, 0, nv, 0, -1, nv);
-    for (int v = 1; v < nv; ++v)
-      for (int u = 1; u < nu; ++u) {
-        places[{u, v}] = {-1, 0, static_cast<int>(polygon.inner.size())};
-        polygon.inner.push_back(vertex_of(lattice, u, v));
-      }
-    for (int v = 0; v < nv; ++v)
-      for (int u = 0; u < nu; ++u)
-        polygon.quadrilaterals.push_back(
-            {places.at({u, v}), places.at({u + 1, v}), places.at({u + 1, v + 1}), places.at({u, v + 1})});
-  }
-
-  Sheet sheet() {
-    sheet_.connect();
-    return std::move(sheet_);
-  }
-
- private:
-  VertexId vertex_of(const CellLattice& lattice, int u, int v) {
-    std::vector<NodeId> nodes;
+// Columns of lattices are nodes above each other.
+void add_polygon(const CellLattice& lattice, SheetOfColumns& sheet) {
+  const auto [nu, nv, nw] = lattice.elements;
+  const auto column = [&](int u, int v) {
+    SheetOfColumns::Column nodes;
     for (int w = 0; w <= lattice.elements[2]; ++w) nodes.push_back(lattice.node(u, v, w));
-    const auto [known, is_new] = vertices_.try_emplace({nodes.front(), nodes.back()}, VertexId(sheet_.vertices.size()));
-    if (is_new) sheet_.vertices.push_back({std::move(nodes)});
-    return known->second;
-  }
-
-  Sheet sheet_;
-  std::map<std::pair<NodeId, NodeId>, VertexId> vertices_;  // by base and apex
-};
+    return nodes;
+  };
+  const auto add_side = [&](int u, int v, int du, int dv, int parts) {
+    std::vector<SheetOfColumns::Column> stops;
+    for (int part = 0; part < parts; ++part) stops.push_back(column(u + part * du, v + part * dv));
+    sheet.add_side(stops);
+  };
+  Polygon& polygon = sheet.add_cell(lattice.has_basal, lattice.has_apical);
+  add_side(0, 0, 1, 0, nu), add_side(nu, 0, 0, 1, nv), add_side(nu, nv, -1, 0, nu), add_side(0, nv, 0, -1, nv);
+  for (int v = 0; v < nv; ++v)
+    for (int u = 0; u < nu; ++u)
+      polygon.quadrilaterals.push_back({sheet.place(column(u, v)), sheet.place(column(u + 1, v)),
+                                        sheet.place(column(u + 1, v + 1)), sheet.place(column(u, v + 1))});
+}
 
 }  // namespace
 
@@ -141,9 +108,9 @@ void set_corners_and_lines(const CellLattice& lattice, const Vectors& rest_posit
 Tissue tissue_from_lattices(const std::vector<CellLattice>& cells, Vectors rest_positions) {
   Tissue tissue;
   tissue.rest_positions = std::move(rest_positions);
-  SheetOfLattices sheet;
+  SheetOfColumns sheet;
   for (const CellLattice& lattice : cells) {
-    sheet.add(lattice);
+    add_polygon(lattice, sheet);
     Cell& cell = tissue.cells.emplace_back();
     cell.grid_place = lattice.grid_place;
     cell.is_of_grid = true;

@@ -54,17 +54,15 @@ class Mesher {
   }
 
  private:
-  // Points of a patch where its lines cross, and their nodes, level by level.
-  struct PatchLattice {
-    int along = 0, across = 0;  // elements along u and v
+  // Nodes where the lines of a patch cross, with their points on every level.
+  struct PatchLattice : CellLattice {
     std::vector<VertexMean> points;
-    std::vector<NodeId> nodes;
   };
 
-  PatchLattice lattice_of(const Outline& outline, const OutlineQuad& quadrilateral, std::size_t levels) const {
-    const Patch patch(outline, quadrilateral);
+  static PatchLattice lattice_of(const Patch& patch, std::size_t levels) {
     const std::vector<double> us = patch.lines(0), vs = patch.lines(1);
-    PatchLattice lattice{static_cast<int>(us.size()) - 1, static_cast<int>(vs.size()) - 1, {}, {}};
+    PatchLattice lattice;
+    lattice.elements = {static_cast<int>(us.size()) - 1, static_cast<int>(vs.size()) - 1, static_cast<int>(levels)};
     for (const double v : vs)
       for (const double u : us) lattice.points.push_back(patch.point(u, v));
     lattice.nodes.resize(lattice.points.size() * (levels + 1));
@@ -83,7 +81,7 @@ class Mesher {
     const std::size_t levels = tissue_.sheet.level_count(id);
     std::vector<PatchLattice> lattices;
     for (const OutlineQuad& quadrilateral : polygon.quadrilaterals)
-      lattices.push_back(lattice_of(outline, quadrilateral, levels));
+      lattices.push_back(lattice_of(Patch(outline, quadrilateral), levels));
     if (place_ == nullptr)  // hanging nodes get numbers patch by patch
       for (PatchLattice& lattice : lattices)
         for (std::size_t level = 0; level <= levels; ++level)
@@ -93,24 +91,20 @@ class Mesher {
     cell.first_element = ElementId(tissue_.elements.size());
     for (std::size_t level = 0; level < levels; ++level)
       for (PatchLattice& lattice : lattices)
-        for (int v = 0; v < lattice.across; ++v)
-          for (int u = 0; u < lattice.along; ++u) {
+        for (int v = 0; v < lattice.elements[1]; ++v)
+          for (int u = 0; u < lattice.elements[0]; ++u) {
             std::array<NodeId, 8> element;
             for (int i = 0; i < 8; ++i) {
               const Vec3& r = hex_reference_nodes[i];
-              const int point = u + (r.x() > 0) + (lattice.along + 1) * (v + (r.y() > 0));
+              const int point = u + (r.x() > 0) + (lattice.elements[0] + 1) * (v + (r.y() > 0));
               element[i] = node(lattice, static_cast<std::size_t>(point), level + (r.z() > 0));
             }
             add_element(element, id, level == 0 && polygon.has_basal, level + 1 == levels && polygon.has_apical,
                         tissue_);
           }
     cell.element_count = static_cast<int>(tissue_.elements.size() - cell.first_element.index());
-    if (cell.is_of_grid && lattices.size() == 1) {
-      CellLattice lattice;
-      lattice.elements = {lattices.front().along, lattices.front().across, static_cast<int>(levels)};
-      lattice.nodes = std::move(lattices.front().nodes);
-      plica::set_corners_and_lines(lattice, tissue_.rest_positions, cell);
-    }
+    if (cell.is_of_grid && lattices.size() == 1)
+      plica::set_corners_and_lines(lattices.front(), tissue_.rest_positions, cell);
   }
 
   NodeId node(const VertexMean& on, std::size_t level) {
@@ -249,6 +243,14 @@ std::vector<double> Patch::lines(int along) const {
   return {places.begin(), places.end()};
 }
 
+std::vector<std::array<std::array<double, 2>, 2>> Patch::elements() const {
+  const std::vector<double> us = lines(0), vs = lines(1);
+  std::vector<std::array<std::array<double, 2>, 2>> elements;
+  for (std::size_t v = 1; v < vs.size(); ++v)
+    for (std::size_t u = 1; u < us.size(); ++u) elements.push_back({{{us[u - 1], vs[v - 1]}, {us[u], vs[v]}}});
+  return elements;
+}
+
 VertexMean Patch::point(double u, double v) const {
   VertexMean sum;
   const auto add = [&](int edge, double at, double weight) { add_point(edges_[edge], at, weight, sum); };
@@ -308,13 +310,9 @@ void set_element_rest_shapes(Tissue& tissue, CellId id) {
     const double low = static_cast<double>(level) / static_cast<double>(levels),
                  high = static_cast<double>(level + 1) / static_cast<double>(levels);
     for (const OutlineQuad& quadrilateral : polygon.quadrilaterals) {
-      const Patch patch(outline, quadrilateral);
-      const std::vector<double> us = patch.lines(0), vs = patch.lines(1);
       const HexPoints shape = part_over(rest_prism(cell), quadrilateral);
-      for (std::size_t v = 1; v < vs.size(); ++v)
-        for (std::size_t u = 1; u < us.size(); ++u)
-          tissue.element_rest_shape[element++] =
-              hex_part(shape, Vec3(us[u - 1], vs[v - 1], low), Vec3(us[u], vs[v], high));
+      for (const auto& [from, to] : Patch(outline, quadrilateral).elements())
+        tissue.element_rest_shape[element++] = hex_part(shape, Vec3(from[0], from[1], low), Vec3(to[0], to[1], high));
     }
   }
 }
@@ -323,10 +321,8 @@ std::size_t element_count(const Sheet& sheet, CellId cell) {
   const Polygon& polygon = sheet.cells[cell.index()];
   const Outline outline(polygon);
   std::size_t count = 0;
-  for (const OutlineQuad& quadrilateral : polygon.quadrilaterals) {
-    const Patch patch(outline, quadrilateral);
-    count += (patch.lines(0).size() - 1) * (patch.lines(1).size() - 1);
-  }
+  for (const OutlineQuad& quadrilateral : polygon.quadrilaterals)
+    count += Patch(outline, quadrilateral).elements().size();
   return count * sheet.level_count(cell);
 }
 

@@ -20,7 +20,6 @@ class Outline {
  public:
   explicit Outline(const Polygon& polygon);
 
-  [[nodiscard]] const Polygon& polygon() const { return polygon_; }
   [[nodiscard]] const std::vector<Side>& sides() const { return sides_; }
 
   /// Add weight times a place to a mean.
@@ -40,6 +39,9 @@ class Patch {
 
   /// Return the coordinates u (0) or v (1) of element lines: 0, stops on the two sides along it, 1.
   [[nodiscard]] std::vector<double> lines(int along) const;
+
+  /// Return the part of each element, u fastest: its lowest and its highest u and v.
+  [[nodiscard]] std::vector<std::array<std::array<double, 2>, 2>> elements() const;
 
   /// Return a point on the bilinearly blended (Coons) patch of the four sides. It coincides with the sides and is
   /// bilinear between lines through the stops, so elements represent a face exactly. Coordinates are dyadic, so weights

@@ -112,8 +112,7 @@ TissueChange keep_only(Tissue& tissue, const CellSet& cells) {
   std::erase_if(change.origin, [&](CellId cell) { return !cells[cell.index()]; });
   tissue.sheet.keep(change.origin);
   keep_elements(tissue, change.origin);
-  follow(change, tissue.regions);
-  follow(change, tissue.cell_arrays);
+  follow(change, tissue);
   return change;
 }
 

@@ -216,14 +216,12 @@ void set_polygon_edges(const PolygonChains& chains, const Vectors& rest_position
 
 std::vector<bool> inner_nodes_of_polygons(const Tissue& tissue) {
   std::vector<bool> is_inner(tissue.node_count(), false);
-  for (const auto* facets : {&tissue.basal_facets, &tissue.apical_facets})
-    for (const Facet& facet : *facets)
-      for (const NodeId node : facet.nodes)
-        if (node.index() < tissue.free_node_count() && !tissue.cells[facet.cell.index()].is_of_grid)
-          is_inner[node.index()] = true;
-  for (const Cell& cell : tissue.cells)
-    for (const CellEdge& edge : cell.edges)
-      for (const NodeId node : edge.nodes) is_inner[node.index()] = false;
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c)
+    if (!tissue.cells[c].is_of_grid)
+      for (const VertexId vertex : tissue.sheet.cells[c].inner) {
+        const std::vector<NodeId>& nodes = tissue.sheet.vertices[vertex.index()].nodes;
+        for (const NodeId node : {nodes.front(), nodes.back()}) is_inner[node.index()] = true;
+      }
   return is_inner;
 }
 

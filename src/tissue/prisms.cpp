@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <map>
+#include <span>
 
 #include "tissue/mesher.hpp"
 #include "tissue/polygon_cell.hpp"
@@ -11,22 +11,16 @@
 namespace plica {
 namespace {
 
-/// A place in a polygon: a vertex, the middle of an edge (its vertices, the lower first), or the middle of a cell.
-struct Place {
-  enum class Kind { vertex, edge, middle } kind;
-  std::size_t first, second = 0;
+// Mean of vertices: one, those of an edge in their order, or all of a cell.
+using Place = std::vector<std::size_t>;
 
-  friend auto operator<=>(const Place&, const Place&) = default;
-};
-
-Place vertex(std::size_t v) { return {Place::Kind::vertex, v}; }
-Place middle_of_edge(std::size_t a, std::size_t b) { return {Place::Kind::edge, std::min(a, b), std::max(a, b)}; }
+Place middle_of_edge(std::size_t a, std::size_t b) { return {std::min(a, b), std::max(a, b)}; }
 
 class Builder {
  public:
   Builder(const PrismSheet& sheet, PolygonSplit split, int layers)
       : sheet_(sheet), hangs_(split == PolygonSplit::diagonals), layers_(layers) {
-    for (std::size_t v = 0; v < sheet.basal.size(); ++v) vertex_of(vertex(v));
+    for (std::size_t v = 0; v < sheet.basal.size(); ++v) vertex_of({v});
   }
 
   Tissue tissue() {
@@ -47,17 +41,9 @@ class Builder {
     const auto of_vertex = [&](std::size_t v) {
       return Vec3((1 - height) * sheet_.basal[v] + height * sheet_.apical[v]);
     };
-    switch (place.kind) {
-      case Place::Kind::vertex:
-        return of_vertex(place.first);
-      case Place::Kind::edge:
-        return 0.5 * (of_vertex(place.first) + of_vertex(place.second));
-      case Place::Kind::middle:
-        break;
-    }
-    Vec3 sum = Vec3::Zero();
-    for (const std::size_t v : sheet_.cells[place.first]) sum += of_vertex(v);
-    return sum / static_cast<double>(sheet_.cells[place.first].size());
+    Vec3 sum = of_vertex(place.front());
+    for (const std::size_t v : std::span(place).subspan(1)) sum += of_vertex(v);
+    return sum / static_cast<double>(place.size());
   }
 
   [[nodiscard]] std::vector<OutlineQuad> split_of(const std::vector<std::size_t>& polygon) const {
@@ -68,12 +54,11 @@ class Builder {
     return best_split(corners_of_polygon(polygon.size()), [&](const auto& split) { return worst_part(prism, split); });
   }
 
-  // Originals of images.
-  [[nodiscard]] Place original(const Place& place) const {
-    const Periods& periods = sheet_.periods;
-    if (place.kind == Place::Kind::vertex) return vertex(periods.original(place.first));
-    if (place.kind == Place::Kind::middle) return place;
-    return middle_of_edge(periods.original(place.first), periods.original(place.second));
+  // What it is an image of.
+  [[nodiscard]] Place original(Place place) const {
+    for (std::size_t& v : place) v = sheet_.periods.original(v);
+    std::ranges::sort(place);
+    return place;
   }
 
   // Vertices keep their order; with kites there are some in the middles of edges and cells.
@@ -101,13 +86,13 @@ class Builder {
   void note(const OutlinePlace& place, std::size_t c) {
     const std::vector<std::size_t>& polygon = sheet_.cells[c];
     if (place.is_middle()) {
-      for (const std::size_t v : polygon) note(vertex(v));
+      for (const std::size_t v : polygon) note({v});
       return;
     }
     const std::size_t from = polygon[place.wall], to = polygon[(place.wall + 1) % polygon.size()];
-    if (place.at == 0) return note(vertex(from));
+    if (place.at == 0) return note({from});
     if (!hangs_) return note(middle_of_edge(from, to));
-    for (const std::size_t v : {std::min(from, to), std::max(from, to)}) note(vertex(v));
+    for (const std::size_t v : middle_of_edge(from, to)) note({v});
   }
 
   void add_cell(std::size_t c) {
@@ -121,9 +106,9 @@ class Builder {
         else
           place.inner = 0;
       }
-    if (!hangs_) polygon.inner.push_back(vertex_of({Place::Kind::middle, c}));
+    if (!hangs_) polygon.inner.push_back(vertex_of(vertices));
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-      polygon.ring.push_back({vertex_of(vertex(vertices[i])), {}, 0});
+      polygon.ring.push_back({vertex_of({vertices[i]}), {}, 0});
       if (!hangs_)
         polygon.ring.push_back({vertex_of(middle_of_edge(vertices[i], vertices[(i + 1) % vertices.size()])), {}, 0.5});
     }

@@ -1,11 +1,21 @@
 #include "tissue/sheet.hpp"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <cstdint>
 
 #include "tissue/mesh_input.hpp"
 
 namespace plica {
+namespace {
+
+// A place on a side as a multiple of 2^-32, so that places from either end are the same.
+double part_of_side(std::size_t part, std::size_t parts) {
+  constexpr double unit = 1.0 / (std::int64_t{1} << 32);
+  return unit * std::round(static_cast<double>(part) / static_cast<double>(parts) / unit);
+}
+
+}  // namespace
 
 std::vector<Side> Polygon::sides() const {
   std::vector<Side> sides;
@@ -79,6 +89,46 @@ void Sheet::keep(std::span<const CellId> kept) {
   for (Wall& wall : walls)
     for (CellId& cell : wall.cells)
       if (cell.valid()) cell = now[cell.index()];
+}
+
+Polygon& SheetOfColumns::add_cell(bool has_basal, bool has_apical) {
+  sides_ = 0;
+  places_.clear();
+  Polygon& polygon = sheet_.cells.emplace_back();
+  polygon.has_basal = has_basal;
+  polygon.has_apical = has_apical;
+  return polygon;
+}
+
+void SheetOfColumns::add_side(const std::vector<Column>& stops) {
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    const Stop stop{vertex_of(stops[i]), {}, part_of_side(i, stops.size())};
+    sheet_.cells.back().ring.push_back(stop);
+    places_[stop.vertex] = {sides_, stop.at};
+  }
+  ++sides_;
+}
+
+OutlinePlace SheetOfColumns::place(const Column& column) {
+  const VertexId vertex = vertex_of(column);
+  const auto [place, is_within] = places_.try_emplace(vertex);
+  if (is_within) {
+    std::vector<VertexId>& inner = sheet_.cells.back().inner;
+    place->second.inner = static_cast<int>(inner.size());
+    inner.push_back(vertex);
+  }
+  return place->second;
+}
+
+Sheet SheetOfColumns::sheet() {
+  sheet_.connect();
+  return std::move(sheet_);
+}
+
+VertexId SheetOfColumns::vertex_of(const Column& column) {
+  const auto [known, is_new] = vertices_.try_emplace({column.front(), column.back()}, VertexId(sheet_.vertices.size()));
+  if (is_new) sheet_.vertices.push_back({column});
+  return known->second;
 }
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -23,7 +24,6 @@ struct Vertex {
   VertexId original = {};                  // of an image at the end of a period; invalid: it is no image
   std::array<int, 3> periods = {0, 0, 0};  // from there, along x, y, z
 
-  bool operator==(const Vertex&) const = default;
   static auto parts(auto& vertex) { return std::tie(vertex.nodes, vertex.original, vertex.periods); }
 };
 
@@ -32,7 +32,6 @@ struct Wall {
   std::array<CellId, 2> cells;  // left and right of it; invalid: none
 
   [[nodiscard]] CellId beyond(CellId cell) const { return cells[cells[0] == cell ? 1 : 0]; }
-  bool operator==(const Wall&) const = default;
 };
 
 /// Vertex on the outline of a polygon: a corner, or a stop on a side, where the neighbour has a corner or a line ends.
@@ -41,7 +40,6 @@ struct Stop {
   WallId wall;    // from here to the next stop
   double at = 0;  // on its side, from its first corner (0) to the next (1)
 
-  bool operator==(const Stop&) const = default;
   static auto parts(auto& stop) { return std::tie(stop.vertex, stop.at); }
 };
 
@@ -76,7 +74,6 @@ struct Polygon {
   /// Set the ring from sides.
   void take_sides(const std::vector<Side>& sides);
 
-  bool operator==(const Polygon&) const = default;
   static auto parts(auto& polygon) {
     return std::tie(polygon.ring, polygon.inner, polygon.quadrilaterals, polygon.has_basal, polygon.has_apical);
   }
@@ -104,9 +101,31 @@ struct Sheet {
   /// Keep only these cells, in this order. Columns and walls keep their numbers.
   void keep(std::span<const CellId> kept);
 
-  bool operator==(const Sheet&) const = default;
   /// Members from which walls follow (connect).
   static auto parts(auto& sheet) { return std::tie(sheet.vertices, sheet.cells); }
+};
+
+/// Makes a sheet, cell by cell, from columns: nodes from base to apex.
+class SheetOfColumns {
+ public:
+  using Column = std::vector<NodeId>;
+
+  /// Begin a cell.
+  Polygon& add_cell(bool has_basal = true, bool has_apical = true);
+  /// Add its next side: a corner and the stops after it, evenly spaced.
+  void add_side(const std::vector<Column>& stops);
+  /// Return the place of a column: on a side of the cell, or else within, where it becomes a vertex.
+  OutlinePlace place(const Column& column);
+  /// Return the sheet, with its walls.
+  Sheet sheet();
+
+ private:
+  VertexId vertex_of(const Column& column);
+
+  Sheet sheet_;
+  int sides_ = 0;                                           // of the present cell
+  std::map<VertexId, OutlinePlace> places_;                 // in it
+  std::map<std::pair<NodeId, NodeId>, VertexId> vertices_;  // by base and apex
 };
 
 /// Whether the vertices and splits of polygons fit this number of free nodes, for a sheet from outside, without images.

@@ -138,6 +138,8 @@ struct Tissue {
   std::array<bool, 3> is_mirrored = {false, false, false};
   bool is_endless = false;  // along x: a slice, whose ends are shared with adjacent slices
 
+  static auto parts_by_cell(auto& tissue) { return std::tie(tissue.cell_arrays, tissue.regions); }
+
   /// Return the fraction of an object spanned by these nodes that belongs to this side: 1/2 per mirror plane that
   /// contains all of them.
   [[nodiscard]] double side_share(std::span<const NodeId> nodes) const;
