@@ -234,7 +234,7 @@ TEST(AdviceRemedies, EachEndsItsMessage) {
       ++tried;
     }
   }
-  EXPECT_EQ(tried, 35);
+  EXPECT_EQ(tried, 36);
 }
 
 // Each shape has its own keys.
