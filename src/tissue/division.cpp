@@ -95,7 +95,7 @@ Rings<Item> cut_ring(const CellCut& cut, std::span<const Item> ring, const std::
   rings.high.insert(rings.high.end(), first + 1, second);
   rings.high.insert(rings.high.end(), high.begin() + 1, high.end());
   const auto turn = cut.first_wall % static_cast<std::ptrdiff_t>(rings.high.size());
-  std::ranges::rotate(rings.high, rings.high.end() - turn);
+  std::rotate(rings.high.begin(), rings.high.end() - turn, rings.high.end());
   return rings;
 }
 
