@@ -67,7 +67,7 @@ std::shared_ptr<const GivenPrisms> prisms_of(const Numbers& apical, const Number
                                              const std::map<std::string, std::vector<double>>& arrays,
                                              const std::vector<std::string>& remarks) {
   return std::make_shared<const GivenPrisms>(
-      GivenPrisms{{positions_of(apical), positions_of(basal), cells}, arrays, remarks});
+      GivenPrisms{{positions_of(apical), positions_of(basal), cells}, {arrays.begin(), arrays.end()}, remarks});
 }
 
 /// Return points, nodes of hexahedra and the cell of each, as made with the defaults of [embryo].

@@ -18,11 +18,6 @@ std::vector<double> area_ratios(const Tissue& tissue, std::span<const Facet> fac
   return now;
 }
 
-int elements_through_height(const Cell& cell) {
-  const auto edge = std::ranges::find(cell.edges, CellSide::lateral, &CellEdge::side);
-  return static_cast<int>(edge->nodes.size()) - 1;
-}
-
 bool overbends(const Model& model) {
   return std::ranges::any_of(model.laws, [](const auto& law) { return law->overbends(); });
 }
@@ -39,16 +34,16 @@ std::optional<double> bending_error(const Model& model, std::span<const Vec3> po
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     const double of_cell = std::abs(basal[c] - apical[c]);
     bending += of_cell;
-    wrong += of_cell * error_per_area_ratio * of_cell / elements_through_height(tissue.cells[c]);
+    wrong += of_cell * error_per_area_ratio * of_cell / static_cast<double>(tissue.sheet.level_count(CellId(c)));
   }
   if (bending <= least_bending * static_cast<double>(tissue.cells.size())) return std::nullopt;
   return wrong / bending;
 }
 
 int elements_through_height(const Tissue& tissue) {
-  int most = 1;
-  for (const Cell& cell : tissue.cells) most = std::max(most, elements_through_height(cell));
-  return most;
+  std::size_t most = 1;
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) most = std::max(most, tissue.sheet.level_count(CellId(c)));
+  return static_cast<int>(most);
 }
 
 MeasureSet bending_set() {

@@ -153,12 +153,12 @@ FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile
   return sites;
 }
 
-void follow_division(FurrowSites& sites, const Tissue& tissue, const Division& division) {
-  sites.contractile = inherited(division, sites.contractile);
+void follow_division(FurrowSites& sites, const Tissue& tissue, const TissueChange& change) {
+  sites.contractile = inherited(change, sites.contractile);
   sites.midline = midline_of(tissue, sites.outward);
   for (MonitoredCells* cells : {&sites.vml, &sites.vce}) {
     const MonitoredCells before = *cells;
-    for (const auto& [low, high] : division.daughters)
+    for (const auto& [low, high] : change.daughters)
       if (std::ranges::find(before, low) != before.end()) cells->push_back(high);
   }
 }
@@ -394,8 +394,8 @@ bool is_open_sheet(const Tissue& tissue) {
 
 std::any begin_sites(const Subject& s) { return s.furrow.vml.empty() ? std::any() : s.furrow; }
 
-void follow(std::any& sites, const Tissue& tissue, const Division& division) {
-  follow_division(std::any_cast<FurrowSites&>(sites), tissue, division);
+void follow_sites(std::any& sites, const Tissue& tissue, const TissueChange& change) {
+  follow_division(std::any_cast<FurrowSites&>(sites), tissue, change);
 }
 
 }  // namespace
@@ -411,7 +411,7 @@ MeasureSet fold_set() {
             "displacement.",
             [](const M& m) { return furrow_depth_um(m.model.tissue, sites_of(m), m.state.positions); }}},
           [](const Subject& s) { return s.is_embryo || is_open_sheet(s.model.tissue); },
-          follow};
+          follow_sites};
 }
 
 MeasureSet furrow_set() {
@@ -420,7 +420,7 @@ MeasureSet furrow_set() {
           begin_sites,
           columns_of_furrow(),
           [](const Subject& s) { return s.is_embryo && !is_open_sheet(s.model.tissue); },
-          follow,
+          follow_sites,
           "fold"};
 }
 

@@ -9,7 +9,7 @@
 
 #include "measure/cross_section.hpp"
 #include "mechanics/model.hpp"
-#include "tissue/division.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 
@@ -32,7 +32,7 @@ struct FurrowSites {
 FurrowSites choose_furrow_sites(const Tissue& tissue, const CellSet& contractile, int vce_from_end);
 
 /// Update the sites after a division: both daughters replace a cell; lips are material points and remain.
-void follow_division(FurrowSites& sites, const Tissue& tissue, const Division& division);
+void follow_division(FurrowSites& sites, const Tissue& tissue, const TissueChange& change);
 
 /// Largest inward distance of the apical midline of the furrow cells from the shell, minus the reference value, um;
 /// empty without a midline.

@@ -26,7 +26,7 @@ struct MeasureSet {
   std::function<std::any(const Subject&)> begin;  // what is kept over the run; empty without what it needs
   std::vector<Column> columns;
   std::function<bool(const Subject&)> is_usual = always;  // whether measured by default
-  std::function<void(std::any&, const Tissue&, const Division&)> follow_division = {};
+  std::function<void(std::any&, const Tissue&, const TissueChange&)> follow_division = {};
   std::string_view with = {};  // set that is measured along with it
 };
 

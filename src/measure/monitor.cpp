@@ -17,12 +17,12 @@ namespace plica {
 
 Vectors forces_of_cells(const Model& model, const State& state, const CellSet& cells) {
   Tissue part = model.tissue;
-  const Division kept = keep_only(part, cells);
+  const TissueChange kept = keep_only(part, cells);
   const Vectors no_velocity(state.positions.size(), Vec3::Zero());
   const Step now = motionless(state, no_velocity);
   Vectors forces(state.positions.size(), Vec3::Zero());
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
-    const std::vector<double> internal = model.laws[l]->internal_after_division(state.internals[l], part, kept);
+    const std::vector<double> internal = model.laws[l]->internal_after_division(state.internals[l], part, kept, {});
     Step law_step = now;
     law_step.internal = internal;
     model.laws[l]->after_division(part, kept, state.positions)->add_forces(law_step, forces);

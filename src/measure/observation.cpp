@@ -27,10 +27,10 @@ Observation Observer::observe(const Moment& moment, const AcceptedStep* step) co
   return row;
 }
 
-void Observer::follow_division(const Tissue& tissue, const Division& division) {
+void Observer::follow_division(const Tissue& tissue, const TissueChange& change) {
   for (const MeasureSet& set : measure_sets())
     if (const auto kept = plan_.sets.find(set.name); kept != plan_.sets.end() && set.follow_division)
-      set.follow_division(kept->second, tissue, division);
+      set.follow_division(kept->second, tissue, change);
 }
 
 }  // namespace plica

@@ -10,7 +10,7 @@
 #include "measure/columns.hpp"
 #include "measure/stop_rule.hpp"
 #include "solver/step/stepper.hpp"
-#include "tissue/division.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 
@@ -71,7 +71,7 @@ class Observer {
     std::erase_if(columns_, [&](const Column* column) { return which(*column); });
   }
 
-  void follow_division(const Tissue& tissue, const Division& division);
+  void follow_division(const Tissue& tissue, const TissueChange& change);
 
  private:
   MeasurePlan plan_;

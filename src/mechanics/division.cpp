@@ -4,6 +4,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "tissue/mesher.hpp"
 #include "tissue/polygon_cell.hpp"
 
 namespace plica {
@@ -13,13 +14,15 @@ namespace {
 struct FinalShape {
   std::vector<Vec3> rest_to;
   double target_to;
+  bool cuts_bend = false;
 };
 
 // Final shape of a mother cell: the target of its growth, or its present shape.
 FinalShape final_shape(const Model& model, CellId cell) {
+  const bool bends = cuts_bend(model.tissue, cell);
   for (const Growth& growth : model.growths)
-    if (growth.cell == cell) return {growth.rest_to, growth.target_to};
-  return {model.tissue.cells[cell.index()].rest_shape, model.volumes.targets()[cell.index()]};
+    if (growth.cell == cell) return {growth.rest_to, growth.target_to, bends};
+  return {model.tissue.cells[cell.index()].rest_shape, model.volumes.targets()[cell.index()], bends};
 }
 
 double prism_volume(const PrismCorners& corners) {
@@ -39,8 +42,9 @@ std::vector<Vec3> part_of_hexahedron(int first_wall, bool is_low, const std::vec
 }
 
 // Part of any other mother: its half, stretched away from the cut to `ratio` of its volume.
-std::vector<Vec3> stretched_half(const CellCut& cut, bool is_low, const std::vector<Vec3>& mother, double ratio) {
-  auto [low, high] = halves_of_prism(cut, mother);
+std::vector<Vec3> stretched_half(const CellCut& cut, bool is_low, const FinalShape& of_mother, double ratio) {
+  const std::vector<Vec3>& mother = of_mother.rest_to;
+  auto [low, high] = halves_of_prism(cut, mother, of_mother.cuts_bend);
   std::vector<Vec3> half = is_low ? std::move(low) : std::move(high);
   const auto middle_of = [&](std::span<const Vec3> polygon, int wall) { return place_in(polygon, {wall, 0.5}); };
   const PrismCorners whole = prism_of(mother);
@@ -58,14 +62,15 @@ std::array<Growth, 2> growths_of(const PlannedDivision& plan, const std::array<C
                                  const FinalShape& mother, const Tissue& tissue, const Vectors& positions,
                                  double time_s) {
   std::array<Growth, 2> growths;
-  const bool is_hexahedron = mother.rest_to.size() == 8 && plan.cut.second_wall == plan.cut.first_wall + 2;
+  const bool is_hexahedron =
+      !mother.cuts_bend && mother.rest_to.size() == 8 && plan.cut.second_wall == plan.cut.first_wall + 2;
   for (const int i : {0, 1}) {
     Growth& growth = growths[i];
     const Cell& daughter = tissue.cells[daughters[i].index()];
     growth.cell = daughters[i];
     growth.rest_from = daughter.rest_shape;
     growth.rest_to = is_hexahedron ? part_of_hexahedron(plan.cut.first_wall, i == 0, mother.rest_to, plan.volume_ratio)
-                                   : stretched_half(plan.cut, i == 0, mother.rest_to, plan.volume_ratio);
+                                   : stretched_half(plan.cut, i == 0, mother, plan.volume_ratio);
     growth.target_from = cell_volume(tissue, daughter, positions);
     growth.target_to = plan.volume_ratio * mother.target_to;
     growth.start_s = time_s;
@@ -74,35 +79,38 @@ std::array<Growth, 2> growths_of(const PlannedDivision& plan, const std::array<C
   return growths;
 }
 
-void divide_laws(Model& model, State& state, const Division& division) {
+void divide_laws(Model& model, State& state, const TissueChange& change, const Vectors& before) {
   state.internals.resize(model.laws.size());
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
-    state.internals[l] = model.laws[l]->internal_after_division(state.internals[l], model.tissue, division);
-    std::unique_ptr<Law> law = model.laws[l]->after_division(model.tissue, division, state.positions);
+    state.internals[l] =
+        model.laws[l]->internal_after_division(state.internals[l], model.tissue, change, {before, state.positions});
+    std::unique_ptr<Law> law = model.laws[l]->after_division(model.tissue, change, state.positions);
     law->set_label(model.laws[l]->label());
     model.laws[l] = std::move(law);
   }
 }
 
-void divide_constraints(Model& model, State& state, const Division& division) {
+void divide_constraints(Model& model, State& state, const TissueChange& change) {
   std::vector<double> multipliers;
   std::span<const double> before = state.multipliers;
   for (std::size_t place = 0; place < model.constraint_count(); ++place) {
     const Constraint& constraint = model.constraint(place);
-    const auto own = constraint.multipliers_after_division(before.first(constraint.count()), division);
+    const auto own = constraint.multipliers_after_division(before.first(constraint.count()), change);
     multipliers.insert(multipliers.end(), own.begin(), own.end());
     before = before.subspan(constraint.count());
   }
-  model.volumes = model.volumes.divided(model.tissue, division);
+  model.volumes = model.volumes.divided(model.tissue, change);
   for (auto& constraint : model.constraints)
-    constraint = constraint->after_division(model.tissue, division, state.positions);
+    constraint = constraint->after_division(model.tissue, change, state.positions);
   state.multipliers = std::move(multipliers);
 }
 
 // Held nodes stay held; a new one is where all nodes that it lies between are.
-void divide_holds(Model& model, const Division& division) {
-  model.held.resize(division.free_nodes_before);
-  for (const NodeMean& place : division.new_nodes) {
+void divide_holds(Model& model, const TissueChange& change) {
+  std::vector<std::array<bool, 3>> before = std::move(model.held);
+  model.held.clear();
+  for (const NodeId node : change.node_origin) model.held.push_back(before[node.index()]);
+  for (const NodeMean& place : change.new_nodes) {
     std::array<bool, 3> held = {true, true, true};
     for (const auto& [node, weight] : place)
       for (int axis = 0; axis < 3; ++axis) held[axis] = held[axis] && model.held[node.index()][axis];
@@ -113,14 +121,14 @@ void divide_holds(Model& model, const Division& division) {
 
 // New nodes begin without contact: the midpoint of two nodes lies inside the shell. On a bent face, which is blended
 // from its edges, a node may lie outside; the next step projects it back.
-void divide_obstacles(Model& model, State& state, const Division& division) {
+void divide_obstacles(Model& model, State& state, const TissueChange& change) {
   std::vector<double> forces;
   std::vector<char> on_obstacle;
   std::size_t first = 0;  // of the obstacle's contacts before
   for (auto& obstacle : model.obstacles) {
     std::map<NodeId, std::size_t> place;
     for (const NodeId node : obstacle->nodes()) place[node] = first++;
-    obstacle = obstacle->after_division(model.tissue, division);
+    obstacle = obstacle->after_division(model.tissue, change);
     for (const NodeId node : obstacle->nodes()) {
       const auto known = place.find(node);
       forces.push_back(known == place.end() ? 0 : state.obstacle_forces[known->second]);
@@ -140,10 +148,10 @@ Vec3 momentum(const Model& model, const Vectors& velocities) {
 
 // Halves of unequal mass, moving as their mother did, would have another momentum: new nodes make up for it, where they
 // can move.
-void restore_momentum(const Model& model, const Division& division, const Vec3& before, Vectors& velocities) {
-  if (division.new_nodes.empty()) return;
+void restore_momentum(const Model& model, const TissueChange& change, const Vec3& before, Vectors& velocities) {
+  if (change.new_nodes.empty()) return;
   Vectors unit(model.tissue.node_count(), Vec3::Zero());
-  for (std::size_t n = division.free_nodes_before; n < model.tissue.free_node_count(); ++n)
+  for (std::size_t n = change.kept_nodes(); n < model.tissue.free_node_count(); ++n)
     for (int axis = 0; axis < 3; ++axis) unit[n][axis] = model.held[n][axis] ? 0 : 1;
   model.tissue.place_hanging(unit);
   const Vec3 mass = momentum(model, unit);
@@ -154,7 +162,7 @@ void restore_momentum(const Model& model, const Division& division, const Vec3& 
 
 }  // namespace
 
-Division divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned) {
+TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned) {
   if (const auto why = why_indivisible(model.tissue)) throw std::logic_error("cells cannot divide: " + *why);
   // Finished growth is dropped; the last shape and target stay.
   if (std::optional<Model> now = grown(model, state.time_s)) model = std::move(*now);
@@ -169,24 +177,25 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
     std::erase_if(model.growths, [&](const Growth& growth) { return growth.cell == plan.cut.cell; });
   }
 
-  Division division = divide(model.tissue, cuts, state.time_s, state.positions);
-  state.positions = with_new_nodes(model.tissue, division, state.positions);
-  state.velocities = with_new_nodes(model.tissue, division, state.velocities);
+  TissueChange change = divide(model.tissue, cuts, state.time_s, state.positions);
+  const Vectors before = std::move(state.positions);
+  state.positions = with_new_nodes(model.tissue, change, before);
+  state.velocities = with_new_nodes(model.tissue, change, state.velocities);
   state.trend = {};
 
   for (std::size_t i = 0; i < planned.size(); ++i)
     for (const Growth& growth :
-         growths_of(planned[i], division.daughters[i], final_shapes[i], model.tissue, state.positions, state.time_s)) {
+         growths_of(planned[i], change.daughters[i], final_shapes[i], model.tissue, state.positions, state.time_s)) {
       model.tissue.cells[growth.cell.index()].target_volume = growth.target_from;
       model.growths.push_back(growth);
     }
 
-  divide_constraints(model, state, division);
-  divide_laws(model, state, division);
-  divide_holds(model, division);
-  divide_obstacles(model, state, division);
-  if (!model.masses().empty()) restore_momentum(model, division, momentum_before, state.velocities);
-  return division;
+  divide_constraints(model, state, change);
+  divide_laws(model, state, change, before);
+  divide_holds(model, change);
+  divide_obstacles(model, state, change);
+  if (!model.masses().empty()) restore_momentum(model, change, momentum_before, state.velocities);
+  return change;
 }
 
 std::optional<Model> grown(const Model& model, double time_s) {

@@ -20,7 +20,7 @@ struct PlannedDivision {
 /// Divide the cells at the time of the state. Positions, momentum and tension of contractions do not change; pressures
 /// and velocities are inherited. The target volume of a daughter starts at the volume of its half, its rest shape at
 /// half of that of the mother; both then grow (`grown`). std::logic_error if the tissue is indivisible.
-Division divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned);
+TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned);
 
 /// Return the model with the rest shapes and target volumes that growing daughters have at `time_s`; empty if these are
 /// its own.

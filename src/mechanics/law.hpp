@@ -21,7 +21,7 @@ namespace plica {
 
 struct Tissue;
 struct Model;
-struct Division;
+struct TissueChange;
 struct CellPattern;
 
 /// State of a step: the unknown positions at its end, and everything constant during it. A quantity q of positions
@@ -108,6 +108,11 @@ class NodeGroups {
   std::vector<NodeId> nodes_;
 };
 
+/// Positions of nodes at a change of the tissue, um; empty for a part of it.
+struct ChangePositions {
+  std::span<const Vec3> before, after;
+};
+
 /// Force law. Vectors have one Vec3 per node; forces in nN, tangents in nN/um, energies in nN um. A law is constant
 /// during a step; its internal state (stress-free lengths, contact pairs) is an array of numbers held by State.
 class Law {
@@ -165,12 +170,13 @@ class Law {
   /// Return the law for the tissue after a division, with nodes at `positions`. Forces on existing nodes are
   /// unchanged, except for effects of finer elements. Also called for a tissue of some cells only (forces_of_cells), so
   /// previous cells may be missing.
-  [[nodiscard]] virtual std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+  [[nodiscard]] virtual std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                             std::span<const Vec3> positions) const = 0;
   /// Return the internal state after a division from the one before; called on the law before the division.
   [[nodiscard]] virtual std::vector<double> internal_after_division(std::span<const double> internal,
                                                                     const Tissue& /*tissue*/,
-                                                                    const Division& /*division*/) const {
+                                                                    const TissueChange& /*change*/,
+                                                                    const ChangePositions& /*positions*/) const {
     return {internal.begin(), internal.end()};
   }
 
@@ -180,7 +186,7 @@ class Law {
   /// Return the law with this past for a tissue that divisions made of its own; `change` has no new nodes. Called on
   /// the law of the initial tissue, with reference positions. Throws InvalidNumbers for the past of another law or
   /// tissue.
-  [[nodiscard]] virtual std::unique_ptr<Law> restored(const Tissue& tissue, const Division& change,
+  [[nodiscard]] virtual std::unique_ptr<Law> restored(const Tissue& tissue, const TissueChange& change,
                                                       std::span<const Vec3> positions,
                                                       std::span<const double> past) const {
     if (!past.empty()) throw InvalidNumbers();

@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "core/number_list.hpp"
+#include "tissue/division.hpp"
 #include "tissue/mesh_input.hpp"
+#include "tissue/mesher.hpp"
 
 namespace plica {
 namespace {
@@ -14,9 +16,13 @@ void require(bool fits) {
 }
 
 // Bounds the size of the mesh before it is made: a sheet has fewer elements than nodes.
-Tissue restored(const Tissue& initial, const ModelMemory& memory, const Division& change, std::size_t nodes) {
+Tissue restored(const Tissue& initial, const ModelMemory& memory, const TissueChange& change, std::size_t nodes) {
   require(!why_indivisible(initial) && memory.rest_positions.size() >= initial.free_node_count());
+  require(memory.sheet.cells.size() == change.origin.size() &&
+          is_consistent(memory.sheet, memory.rest_positions.size()));
   Tissue tissue = initial;
+  tissue.sheet = memory.sheet;
+  tissue.sheet.connect();
   tissue.rest_positions = memory.rest_positions;
   tissue.hanging.clear();
   tissue.next_cell_id = memory.next_cell_id;
@@ -25,8 +31,11 @@ Tissue restored(const Tissue& initial, const ModelMemory& memory, const Division
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     Cell& cell = tissue.cells[c];
     Cell::parts(cell) = Cell::parts(memory.cells[c]);
-    require(is_consistent(cell, tissue.rest_positions.size()));
-    elements += element_count(cell);
+    const Polygon& polygon = tissue.sheet.cells[c];
+    const std::size_t sides = polygon.sides().size();
+    require(cell.rest_shape.size() == 2 * sides);
+    require(!cell.is_of_grid || (sides == 4 && polygon.quadrilaterals.size() == 1));
+    elements += element_count(tissue.sheet, CellId(c));
     require(elements <= nodes);
   }
   complete(tissue, change);
@@ -50,6 +59,7 @@ void restore_growths(const std::vector<Growth>& growths, Model& model) {
 ModelMemory memory_of(const Model& model, std::vector<CellId> origin) {
   const Tissue& tissue = model.tissue;
   ModelMemory memory{.origin = std::move(origin),
+                     .sheet = tissue.sheet,
                      .rest_positions = tissue.rest_positions,
                      .cells = std::vector<Cell>(tissue.cells.size()),
                      .next_cell_id = tissue.next_cell_id,
@@ -62,12 +72,11 @@ ModelMemory memory_of(const Model& model, std::vector<CellId> origin) {
   return memory;
 }
 
-Division change_of(const ModelMemory& memory, const Tissue& initial) {
+TissueChange change_of(const ModelMemory& memory, const Tissue& initial) {
   const std::size_t before = initial.cells.size();
   require(memory.origin.size() >= before && memory.origin.size() == memory.cells.size());
-  Division change;
+  TissueChange change = no_change(initial);
   change.origin = memory.origin;
-  change.free_nodes_before = initial.free_node_count();
   for (std::size_t c = 0; c < memory.origin.size(); ++c) {
     require(c < before ? memory.origin[c] == CellId(c) : memory.origin[c].is_among(before));
     if (c >= before) change.daughters.push_back({memory.origin[c], CellId(c)});
@@ -76,7 +85,7 @@ Division change_of(const ModelMemory& memory, const Tissue& initial) {
 }
 
 Model restored(const Model& initial, const ModelMemory& memory, std::size_t nodes) try {
-  const Division change = change_of(memory, initial.tissue);
+  const TissueChange change = change_of(memory, initial.tissue);
   Model model(restored(initial.tissue, memory, change, nodes));
   const Vectors& positions = model.tissue.rest_positions;
   require(memory.held.size() == nodes && memory.laws.size() == initial.laws.size());

@@ -8,13 +8,14 @@
 #include <vector>
 
 #include "mechanics/model.hpp"
-#include "tissue/division.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 
 /// Data of a model whose cells have divided.
 struct ModelMemory {
-  std::vector<CellId> origin;             // cells; the cell of the initial tissue that each descends from
+  std::vector<CellId> origin;  // cells; the cell of the initial tissue that each descends from
+  Sheet sheet;
   Vectors rest_positions;                 // free nodes; um
   std::vector<Cell> cells;                // only Cell::parts
   int next_cell_id = 0;                   // of the tissue
@@ -23,7 +24,7 @@ struct ModelMemory {
   std::vector<std::vector<double>> laws;  // Law::past
 
   static auto parts(auto& memory) {
-    return std::tie(memory.origin, memory.rest_positions, memory.cells, memory.next_cell_id, memory.held,
+    return std::tie(memory.origin, memory.sheet, memory.rest_positions, memory.cells, memory.next_cell_id, memory.held,
                     memory.growths, memory.laws);
   }
 };
@@ -33,7 +34,7 @@ ModelMemory memory_of(const Model& model, std::vector<CellId> origin);
 
 /// Return all divisions of the initial tissue as one, without its nodes, for data by cell. Throws InvalidNumbers unless
 /// the cells descend from such a tissue.
-Division change_of(const ModelMemory& memory, const Tissue& initial);
+TissueChange change_of(const ModelMemory& memory, const Tissue& initial);
 
 /// Return the model with this memory; `nodes`: expected number of nodes of its tissue. Throws std::logic_error unless
 /// they fit the initial model.

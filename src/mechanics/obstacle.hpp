@@ -32,7 +32,7 @@ class Obstacle {
   [[nodiscard]] virtual Gap gap(const Vec3& position) const = 0;
 
   [[nodiscard]] virtual std::unique_ptr<Obstacle> after_division(const Tissue& tissue,
-                                                                 const Division& division) const = 0;
+                                                                 const TissueChange& change) const = 0;
 };
 
 /// Nodes of all obstacles of a model, obstacle by obstacle: the layout of State::obstacle_forces and on_obstacle. A

@@ -1,6 +1,6 @@
 #include "mechanics/surroundings.hpp"
 
-#include "tissue/division.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 

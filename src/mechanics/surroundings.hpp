@@ -33,7 +33,7 @@ class NodeLaw : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const final {
     for_nodes(step, [&](std::size_t n, const auto& r) { tangent.add_block(NodeId(n), NodeId(n), matrix(r)); });
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& /*division*/,
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& /*change*/,
                                                     std::span<const Vec3> /*positions*/) const final {
     return std::make_unique<Self>(self().remade(tissue));
   }
@@ -145,9 +145,9 @@ class FacePressure final : public Law {
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
   [[nodiscard]] std::vector<double> program_points_s() const override { return program_.times_s(); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.jumps_s(); }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> /*positions*/) const override {
-    return std::make_unique<FacePressure>(tissue, on_apical_, pattern_.after_division(division), pressure_, program_);
+    return std::make_unique<FacePressure>(tissue, on_apical_, pattern_.after_division(change), pressure_, program_);
   }
 
  private:

@@ -186,18 +186,18 @@ void write_mesh(const std::filesystem::path& file, const MeshElements& mesh, std
 
 FramePolygons polygons_of(const Tissue& tissue) {
   FramePolygons polygons;
-  const auto add = [&](NodeId basal, NodeId apical) {
-    polygons.basal.push_back(basal.number());
-    polygons.apical.push_back(apical.number());
-  };
-  for (const Cell& cell : tissue.cells) {
-    // After divisions three cells also meet at stops within a wall.
-    for (const auto& stops : cell.walls)
-      for (std::size_t i = 0; i + 1 < stops.size(); ++i) add(stops[i].basal, stops[i].apical);
-    for (std::size_t i = 0; cell.walls.empty() && i < cell.sides(); ++i)
-      add(cell.basal_corners()[i], cell.apical_corners()[i]);
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+    const std::vector<Stop>& ring = tissue.sheet.cells[c].ring;
+    const auto beyond = [&](const Stop& stop) { return tissue.sheet.walls[stop.wall.index()].beyond(CellId(c)); };
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      // After divisions three cells also meet at stops within a side.
+      if (ring[i].at != 0 && beyond(ring[i]) == beyond(ring[i - 1])) continue;
+      const std::vector<NodeId>& nodes = tissue.sheet.vertices[ring[i].vertex.index()].nodes;
+      polygons.basal.push_back(nodes.front().number());
+      polygons.apical.push_back(nodes.back().number());
+    }
     polygons.ends.push_back(static_cast<int>(polygons.apical.size()));
-    polygons.elements.push_back(cell.first_element.number());
+    polygons.elements.push_back(tissue.cells[c].first_element.number());
   }
   return polygons;
 }

@@ -119,10 +119,10 @@ void Recorder::write(Checkpoint& checkpoint) {
   checkpoints_.write(checkpoint, sync);
 }
 
-void Recorder::cells_divided(const Division& division) {
+void Recorder::cells_divided(const TissueChange& change) {
   frame_taker_.follow_division(simulation_.model().tissue);
   writing_.finish();
-  for (const auto& daughters : division.daughters)
+  for (const auto& daughters : change.daughters)
     for (const CellId daughter : daughters) {
       const Lineage& lineage = simulation_.model().tissue.cells[daughter.index()].lineage;
       std::vector<std::optional<double>> values;

@@ -59,7 +59,7 @@ class Recorder final : public SimulationListener {
   void step_accepted(const AcceptedStep& step, const Observation& measures) override;
 
   /// Record a snapshot with the daughters and their rows of lineage.csv.
-  void cells_divided(const Division& division) override;
+  void cells_divided(const TissueChange& change) override;
 
   /// Write the last snapshot, summary.json and the output of listeners; returns the summary.
   nlohmann::ordered_json finish();

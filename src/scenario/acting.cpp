@@ -94,7 +94,7 @@ CellPattern make_pattern(const ActingInput& input, const Origin& origin, std::ve
   CellPattern of_whole = make_pattern(input, origin.whole);
   of_whole.ablations = std::move(ablations);
   if (!origin.mirror.is_used()) return of_whole;
-  Division side;
+  TissueChange side;
   side.origin = origin.mirror.origins;
   return of_whole.after_division(side);
 }

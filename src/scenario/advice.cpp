@@ -129,17 +129,14 @@ void advise_on_neo_hookean(const Scenario& scenario, const Tissue& tissue, Messa
   if (model_of(elasticity) != ElasticModel::neo_hookean || elasticity.poisson_ratio <= 0.1 ||
       tissue.elements.size() != tissue.cells.size())
     return;
-  std::vector<Remedy> remedies;
-  if (scenario.divisions.empty())
-    remedies.push_back({{{"embryo.elements_per_cell", "[1, 1, 2]"}}, "two elements through the height"});
+  std::vector<Remedy> remedies = {{{{"embryo.elements_per_cell", "[1, 1, 2]"}}, "two elements through the height"}};
   const auto relaxes = [](const auto& named) { return named.second.relaxation_s.has_value(); };
   if (!elasticity.relaxation_s && std::ranges::none_of(scenario.region_elasticities, relaxes))
     remedies.push_back({{{"elasticity.model", "\"corotational\""}}, "another law"});
-  const std::string remedy = remedies_text(remedies);
   out.warn(
       "neo-hookean cells of one element bend {:.0f} % more easily than Poisson's ratio {} implies "
-      "(docs/theory/neo_hookean.md){}{}",
-      100 * elasticity.poisson_ratio, elasticity.poisson_ratio, remedy.empty() ? "" : "; ", remedy);
+      "(docs/theory/neo_hookean.md); {}",
+      100 * elasticity.poisson_ratio, elasticity.poisson_ratio, remedies_text(remedies));
 }
 
 std::set<std::string> used_regions(const Scenario& scenario) {
@@ -444,7 +441,6 @@ std::string remedies_text(const std::vector<Remedy>& remedies) {
 }
 
 std::string finer_mesh(const Scenario& scenario, int elements) {
-  if (!scenario.divisions.empty()) return "runs of this mesh only (cells that divide have one element)";
   const EmbryoShape shape = shape_of(scenario.embryo);
   if (shape == EmbryoShape::file) return fmt::format("a mesh of {} elements through the height", 2 * elements);
   if (!is_of_grid(shape)) return fmt::format("embryo.layers = {}", 2 * elements);

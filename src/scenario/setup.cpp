@@ -80,7 +80,7 @@ Tissue polygonal_tissue(const Scenario& scenario) {
     }
     const PointTable table = table_of(e.file);
     Tissue tissue = build_about_points({table.points, e.points_depth_um, placement_of(e)}, cells);
-    tissue.cell_arrays = table.arrays;
+    tissue.cell_arrays.insert(table.arrays.begin(), table.arrays.end());
     tissue.remarks.insert(tissue.remarks.end(), table.remarks.begin(), table.remarks.end());
     return tissue;
   } catch (const FileError& error) {
@@ -175,7 +175,7 @@ Tissue build_tissue(const Scenario& scenario) {
 
 /// Adds arrays given per cell, by a table or by a program, to those of the tissue's own file.
 void add_arrays(const Scenario& scenario, Tissue& tissue) {
-  const auto add = [&](const std::map<std::string, CellArray>& arrays, const std::string& whose) {
+  const auto add = [&](const auto& arrays, const std::string& whose) {
     for (const auto& [name, values] : arrays)
       if (values.size() != tissue.cells.size())
         throw_at(scenario, "embryo.cell_arrays",

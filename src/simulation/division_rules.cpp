@@ -85,13 +85,13 @@ CellCut cut_of_grid(DivisionPlane plane, CellId id, const std::vector<Vec3>& cor
 }
 
 // Element quality of both halves.
-double quality_of_halves(const CellCut& cut, const std::vector<Vec3>& corners) {
+double quality_of_halves(const CellCut& cut, const std::vector<Vec3>& corners, bool bends) {
   const auto quality = [](const std::vector<Vec3>& half) {
     const PrismCorners prism = prism_of(half);
     const auto worst = [&](const std::vector<OutlineQuad>& split) { return worst_part(prism, split); };
     return worst(best_split(corners_of_polygon(prism.apical.size()), worst));
   };
-  const auto [low, high] = halves_of_prism(cut, corners);
+  const auto [low, high] = halves_of_prism(cut, corners, bends);
   return std::min(quality(low), quality(high));
 }
 
@@ -128,8 +128,10 @@ CellCut cut_of_polygon(DivisionPlane plane, CellId id, const std::vector<Vec3>& 
   const Cell& cell = tissue.cells[id.index()];
   std::vector<Vec3> now;
   for (const NodeId corner_node : cell.corners) now.push_back(positions[corner_node.index()]);
+  const bool bends = cuts_bend(tissue, id);
   const auto sound = std::ranges::find_if(cuts, [&](const auto& one) {
-    return std::min(quality_of_halves(one.second, cell.rest_shape), quality_of_halves(one.second, now)) > least_quality;
+    return std::min(quality_of_halves(one.second, cell.rest_shape, bends), quality_of_halves(one.second, now, bends)) >
+           least_quality;
   });
   return (sound == cuts.end() ? cuts.front() : *sound).second;
 }

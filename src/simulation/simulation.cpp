@@ -225,18 +225,18 @@ void Simulation::divide(const std::vector<PlannedDivision>& due) {
   if (due.empty()) return;
   now_.divisions += static_cast<int>(due.size());
   now_.equilibrium_time_s.reset();  // it counts only after the last division
-  const Division division = divide_cells(*model_, now_.state, due);
+  const TissueChange change = divide_cells(*model_, now_.state, due);
   grown_.reset();
   now_.changes = std::make_shared<const ModelMemory>(
-      memory_of(*model_, now_.changes ? inherited(division, now_.changes->origin) : division.origin));
+      memory_of(*model_, now_.changes ? inherited(change, now_.changes->origin) : change.origin));
   std::erase_if(now_.growth_ends_s, [&](double end_s) { return has_come(end_s, now_s); });
   for (const PlannedDivision& one : due)
     for (auto* times_s : {&now_.growth_ends_s, &controls_.program_points_s}) times_s->push_back(now_s + one.growth_s);
-  observer_.follow_division(model_->tissue, division);
-  for (auto& [name, values] : now_.outside_arrays) values = inherited(division, values);
+  observer_.follow_division(model_->tissue, change);
+  follow(change, now_.outside_arrays);
   renew_stepper();
   step_length_ = StepLength(controls_);
-  for (SimulationListener* listener : listeners_) listener->cells_divided(division);
+  for (SimulationListener* listener : listeners_) listener->cells_divided(change);
 }
 
 // After a jump of forces the earlier motion predicts nothing: no predictor, no error estimate, a short first step.

@@ -31,7 +31,7 @@ class SimulationListener {
   virtual void step_accepted(const AcceptedStep& /*step*/, const Observation& /*measures*/) {}
 
   /// Called after divisions, which change model and state of the simulation.
-  virtual void cells_divided(const Division& /*division*/) {}
+  virtual void cells_divided(const TissueChange& /*change*/) {}
 };
 
 /// Simulation advanced by its owner. Instances are independent; a copy branches the run and continues bitwise

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <stdexcept>
 
 #include "tissue/mesh_faces.hpp"
 
@@ -19,83 +18,58 @@ double share_of(const Tissue& tissue, const Face& face) {
   return std::ranges::all_of(face.nodes, [&](NodeId node) { return x(node) == first; }) ? 0.5 : 1;
 }
 
-std::vector<Face> lateral_faces(const Tissue& tissue) {
-  auto joined = tissue.elements;
-  for (auto& nodes : joined)
-    for (NodeId& node : nodes) node = tissue.original(node);
-  const MeshFaces pairs(joined);
-  std::vector<char> is_outer(6 * tissue.elements.size(), 0);  // whether an apical or basal face of elements
-  const auto place_of = [&](const Facet& facet) {
-    // The face of its element that has the facet's nodes.
-    const std::size_t e = facet.element.index();
-    for (int f = 0; f < 6; ++f) {
-      int common = 0;
-      for (const int corner : hex_faces[f])
-        for (const NodeId node : facet.nodes) common += tissue.elements[e][corner] == node;
-      if (common == 4) return 6 * e + f;
-    }
-    throw std::logic_error("a facet is no face of its element");
-  };
-  for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets})
-    for (const Facet& facet : *facets) is_outer[place_of(facet)] = 1;
+struct Panel {
+  std::array<NodeId, 4> nodes;
+  WallId wall;
+};
 
-  std::vector<Face> faces;
-  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
-    for (int f = 0; f < 6; ++f) {
-      if (is_outer[6 * e + f] != 0) continue;
-      const auto other = pairs.neighbour({e, f});
-      const CellId cell = tissue.element_cell[e];
-      if (other && (other->cell < e || tissue.element_cell[other->cell] == cell)) continue;
-      Face face{face_nodes(tissue.elements[e], f), cell, {}};
-      if (other) face.beyond = tissue.element_cell[other->cell];
-      face.share = share_of(tissue, face);
-      faces.push_back(face);
-    }
-  return faces;
-}
-
-using Panel = std::array<NodeId, 4>;
-
-// The parts of the lateral faces of a polygonal cell that its neighbours have, too: between the stops of a wall, or
-// between the levels of the lateral edges. Elements on the two sides do not match there: lines of a cell end on a wall
-// between its stops, and nodes hang on edges.
-std::vector<Panel> panels_of(const Cell& cell) {
+// Lateral faces of a cell, wall by wall and from base to apex. Elements on the two sides of a wall need not match:
+// lines of a cell end on it between its stops, and nodes hang on edges.
+std::vector<Panel> panels_of(const Sheet& sheet, const Polygon& polygon) {
   std::vector<Panel> panels;
-  for (const auto& stops : cell.walls)
-    for (std::size_t i = 1; i < stops.size(); ++i)
-      panels.push_back({stops[i - 1].basal, stops[i].basal, stops[i].apical, stops[i - 1].apical});
-  if (!cell.walls.empty()) return panels;
-  const std::span<const CellEdge> lateral = std::span(cell.edges).last(cell.sides());
-  for (std::size_t i = 0; i < cell.sides(); ++i) {
-    const auto &from = lateral[i].nodes, &to = lateral[(i + 1) % cell.sides()].nodes;
+  for (std::size_t i = 0; i < polygon.ring.size(); ++i) {
+    const auto& from = sheet.vertices[polygon.ring[i].vertex.index()].nodes;
+    const auto& to = sheet.vertices[polygon.after(i).vertex.index()].nodes;
     for (std::size_t level = 1; level < from.size(); ++level)
-      panels.push_back({from[level - 1], to[level - 1], to[level], from[level]});
+      panels.push_back({{from[level - 1], to[level - 1], to[level], from[level]}, polygon.ring[i].wall});
   }
   return panels;
 }
 
-std::vector<Face> faces_of_panels(const Tissue& tissue) {
-  std::vector<Face> faces;
-  std::map<std::pair<NodeId, NodeId>, std::size_t> place;  // in faces, by two opposite nodes
-  const auto key = [&](NodeId low, NodeId high) { return std::pair(tissue.original(low), tissue.original(high)); };
-  for (std::size_t c = 0; c < tissue.cells.size(); ++c)
-    for (const Panel& panel : panels_of(tissue.cells[c])) {
-      // The neighbour has the same face from the other side.
-      if (const auto beyond = place.find(key(panel[1], panel[3])); beyond != place.end()) {
-        faces[beyond->second].beyond = CellId(c);
-        continue;
-      }
-      place.emplace(key(panel[0], panel[2]), faces.size());
-      faces.push_back({panel, CellId(c), {}});
+// Where no node hangs between others, they are faces of elements, and come in their order.
+std::vector<Panel> in_order_of_elements(const Tissue& tissue, const Cell& cell, const std::vector<Panel>& panels) {
+  const auto sorted = [](std::array<NodeId, 4> nodes) {
+    std::ranges::sort(nodes);
+    return nodes;
+  };
+  std::map<std::array<NodeId, 4>, WallId> walls;
+  for (const Panel& panel : panels) walls[sorted(panel.nodes)] = panel.wall;
+  std::vector<Panel> in_order;
+  const std::size_t begin = cell.first_element.index();
+  for (std::size_t e = begin; e < begin + cell.element_count; ++e)
+    for (int f = 0; f < 4; ++f) {
+      const std::array<NodeId, 4> nodes = face_nodes(tissue.elements[e], f);
+      if (const auto found = walls.find(sorted(nodes)); found != walls.end())
+        in_order.push_back({nodes, found->second});
     }
-  return faces;
+  return in_order;
 }
 
-std::vector<Face> all_lateral_faces(const Tissue& tissue) {
-  if (std::ranges::all_of(tissue.hanging, [](const NodeMean& mean) { return mean.size() == 1; }))
-    return lateral_faces(tissue);
-  std::vector<Face> faces = faces_of_panels(tissue);
-  for (Face& face : faces) face.share = share_of(tissue, face);
+// Each for the first of its cells.
+std::vector<Face> lateral_faces(const Tissue& tissue) {
+  const bool conforms = std::ranges::all_of(tissue.hanging, [](const NodeMean& mean) { return mean.size() == 1; });
+  std::vector<Face> faces;
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+    std::vector<Panel> panels = panels_of(tissue.sheet, tissue.sheet.cells[c]);
+    if (conforms) panels = in_order_of_elements(tissue, tissue.cells[c], panels);
+    for (const Panel& panel : panels) {
+      const CellId beyond = tissue.sheet.walls[panel.wall.index()].beyond(CellId(c));
+      if (beyond.valid() && beyond < CellId(c)) continue;
+      Face face{panel.nodes, CellId(c), beyond.valid() ? std::optional(beyond) : std::nullopt};
+      face.share = share_of(tissue, face);
+      faces.push_back(face);
+    }
+  }
   return faces;
 }
 
@@ -139,7 +113,7 @@ void spread(const Tissue& tissue, int step, int most, std::vector<int>& numbers)
 }  // namespace
 
 std::vector<Face> faces_of(const Tissue& tissue, CellSide side) {
-  if (side == CellSide::lateral) return all_lateral_faces(tissue);
+  if (side == CellSide::lateral) return lateral_faces(tissue);
   std::vector<Face> faces;
   for (const Facet& facet : side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets)
     faces.push_back({facet.nodes, facet.cell, {}});
@@ -174,11 +148,9 @@ bool goes_round(const Tissue& tissue) { return tissue.is_endless || encloses(tis
 
 std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue) {
   std::vector<std::vector<CellId>> neighbours(tissue.cells.size());
-  for (const Face& face : all_lateral_faces(tissue))
-    if (face.beyond) {
-      neighbours[face.cell.index()].push_back(*face.beyond);
-      neighbours[face.beyond->index()].push_back(face.cell);
-    }
+  for (const auto& [cells] : tissue.sheet.walls)
+    if (cells[0].valid() && cells[1].valid())
+      for (const std::size_t i : {0, 1}) neighbours[cells[i].index()].push_back(cells[1 - i]);
   for (std::vector<CellId>& of_cell : neighbours) {
     std::ranges::sort(of_cell);
     of_cell.erase(std::unique(of_cell.begin(), of_cell.end()), of_cell.end());
@@ -187,11 +159,8 @@ std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue) {
 }
 
 std::optional<CellId> cell_between_layers(const Tissue& tissue) {
-  CellSet apical(tissue.cells.size(), false), basal = apical;
-  for (const Facet& facet : tissue.apical_facets) apical[facet.cell.index()] = true;
-  for (const Facet& facet : tissue.basal_facets) basal[facet.cell.index()] = true;
   for (std::size_t c = 0; c < tissue.cells.size(); ++c)
-    if (!apical[c] || !basal[c]) return CellId(c);
+    if (!tissue.sheet.cells[c].has_apical || !tissue.sheet.cells[c].has_basal) return CellId(c);
   return std::nullopt;
 }
 

@@ -1,11 +1,12 @@
 // Cells of several hexahedra out of a file: lattices on a grid, or prisms over polygons with nodes that may hang.
 #include <algorithm>
+#include <map>
 #include <numeric>
-#include <optional>
 
 #include "tissue/hexahedral_mesh.hpp"
 #include "tissue/lattice.hpp"
 #include "tissue/mesh_faces.hpp"
+#include "tissue/mesher.hpp"
 #include "tissue/polygon_cell.hpp"
 
 namespace plica {
@@ -129,8 +130,61 @@ void set_corners(const HexahedralMesh& mesh, const SortedHexahedra& sorted, std:
   }
 }
 
+// Adds the polygon of a cell whose elements are given. Basal nodes that hang are midway between two corners, or in the
+// middle.
+void add_polygon(const Tissue& tissue, const Cell& cell, const PolygonChains& chains, SheetOfColumns& sheet) {
+  const std::map<NodeId, NodeId> above = nodes_above(tissue, cell);
+  const auto column = [&](NodeId base) {
+    SheetOfColumns::Column nodes = {base};
+    for (auto next = above.find(base); next != above.end() && nodes.size() <= above.size();
+         next = above.find(next->second))
+      nodes.push_back(next->second);
+    return nodes;
+  };
+  const std::span<const NodeId> corners = cell.basal_corners();
+  const auto place_of = [&](NodeId node) -> OutlinePlace {
+    if (node.is_among(tissue.free_node_count())) return sheet.place(column(node));
+    const NodeMean& mean = tissue.hanging[node.index() - tissue.free_node_count()];
+    for (std::size_t i = 0; i < corners.size() && mean.size() == 2; ++i)
+      if (std::minmax(mean[0].first, mean[1].first) == std::minmax(corners[i], corners[(i + 1) % corners.size()]))
+        return {static_cast<int>(i), 0.5};
+    return {};
+  };
+  Polygon& polygon = sheet.add_cell();
+  for (const auto& chain : chains.basal) {
+    std::vector<SheetOfColumns::Column> stops;
+    for (const NodeId node : std::span(chain).first(chain.size() - 1)) stops.push_back(column(node));
+    sheet.add_side(stops);
+  }
+  const std::size_t levels = column(corners[0]).size() - 1,
+                    count = static_cast<std::size_t>(cell.element_count) / levels;
+  for (const auto& nodes : std::span(tissue.elements).subspan(cell.first_element.index(), count))
+    polygon.quadrilaterals.push_back({place_of(nodes[0]), place_of(nodes[1]), place_of(nodes[2]), place_of(nodes[3])});
+}
+
+// Whether the mesh of the sheet would be the given one, with cells of kites where they have a node within.
+bool is_mesh_of_sheet(const Tissue& tissue) {
+  Tissue again = tissue;
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+    const Polygon& polygon = tissue.sheet.cells[c];
+    const std::size_t begin = tissue.cells[c].first_element.index(),
+                      count = static_cast<std::size_t>(tissue.cells[c].element_count);
+    const bool hangs = std::ranges::any_of(std::span(tissue.elements).subspan(begin, count), [&](const auto& nodes) {
+      return !std::ranges::all_of(nodes, [&](NodeId node) { return node.is_among(tissue.free_node_count()); });
+    });
+    if (polygon.inner.size() > (hangs ? 0 : 1) || element_count(tissue.sheet, CellId(c)) != count) return false;
+    set_element_rest_shapes(again, CellId(c));
+  }
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
+    const HexPoints &one = tissue.element_rest_shape[e], &other = again.element_rest_shape[e];
+    for (int i = 0; i < 8; ++i)
+      if (!((one[i] - other[i]).norm() <= hanging_tolerance * (one[6] - one[0]).norm())) return false;
+  }
+  return true;
+}
+
 void add_cell(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces, std::size_t c,
-              Cell cell, Tissue& tissue) {
+              Cell cell, SheetOfColumns& sheet, Tissue& tissue) {
   const CellId id(c);
   const std::size_t begin = sorted.first[c], end = sorted.first[c + 1], basal = tissue.basal_facets.size(),
                     apical = tissue.apical_facets.size();
@@ -147,53 +201,9 @@ void add_cell(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const M
         "seen from the apical side, then the apical ones above them; the first four nodes of each hexahedron are basal",
         cell_at(mesh, sorted, c));
   set_polygon_edges(*chains, tissue.rest_positions, cell);
+  add_polygon(tissue, cell, *chains, sheet);
   for (const NodeId corner : cell.corners) cell.rest_shape.push_back(tissue.rest_positions[corner.index()]);
   tissue.cells.push_back(std::move(cell));
-}
-
-// The quadrilaterals of a cell of one layer whose nodes are corners and middles of edges, as prisms by diagonals have.
-std::optional<std::vector<OutlineQuad>> outline_quads(const Tissue& tissue, const Cell& cell) {
-  const auto corners = cell.basal_corners();
-  const auto wall_from = [&](NodeId node) {
-    const auto found = std::ranges::find(corners, node);
-    return found == corners.end() ? std::nullopt : std::optional(static_cast<int>(found - corners.begin()));
-  };
-  const auto place_of = [&](NodeId node) -> std::optional<OutlinePlace> {
-    if (const auto wall = wall_from(node)) return OutlinePlace{*wall, 0};
-    if (node.index() < tissue.free_node_count()) return std::nullopt;
-    const NodeMean& mean = tissue.hanging[node.index() - tissue.free_node_count()];
-    const auto one = wall_from(mean.front().first), other = wall_from(mean.back().first);
-    const int sides = static_cast<int>(cell.sides());
-    if (mean.size() != 2 || !one || !other) return std::nullopt;
-    if ((*one + 1) % sides == *other) return OutlinePlace{*one, 0.5};
-    if ((*other + 1) % sides == *one) return OutlinePlace{*other, 0.5};
-    return std::nullopt;
-  };
-  std::vector<OutlineQuad> quads;
-  const std::size_t begin = cell.first_element.index();
-  for (std::size_t e = begin; e < begin + cell.element_count; ++e) {
-    OutlineQuad& quad = quads.emplace_back();
-    for (int i = 0; i < 4; ++i) {
-      const std::optional<OutlinePlace> place = place_of(tissue.elements[e][i]);
-      if (!place) return std::nullopt;
-      quad[i] = *place;
-    }
-  }
-  return quads;
-}
-
-// Data for division, if all cells are of that kind. (Of several layers or of kites, other nodes are corners.)
-void set_walls(Tissue& tissue) {
-  std::vector<std::vector<OutlineQuad>> quads;
-  for (const Cell& cell : tissue.cells) {
-    auto of_cell = outline_quads(tissue, cell);
-    if (!of_cell) return;
-    quads.push_back(std::move(*of_cell));
-  }
-  for (std::size_t c = 0; c < quads.size(); ++c) {
-    tissue.cells[c].quadrilaterals = std::move(quads[c]);
-    tissue.cells[c].walls = walls_between_corners(tissue.cells[c]);
-  }
 }
 
 Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, const MeshFaces& faces) {
@@ -203,15 +213,18 @@ Tissue from_polygons(const HexahedralMesh& mesh, const SortedHexahedra& sorted, 
   Tissue tissue;
   tissue.rest_positions = mesh.points;
   set_hanging(mesh, tissue);
+  SheetOfColumns sheet;
   std::size_t next = 0;
   for (std::size_t c = 0; c < count; ++c) {
     Cell cell;
     set_corners(mesh, sorted, c, next, tissue.free_node_count(), cell);
-    add_cell(mesh, sorted, faces, c, std::move(cell), tissue);
+    add_cell(mesh, sorted, faces, c, std::move(cell), sheet, tissue);
   }
   if (next != mesh.groups.corners.size())
     throw MeshError("cell_corners has {} nodes; cell_corner_counts adds up to {}", mesh.groups.corners.size(), next);
-  set_walls(tissue);
+  tissue.sheet = sheet.sheet();
+  if (!is_mesh_of_sheet(tissue))
+    for (Polygon& polygon : tissue.sheet.cells) polygon.quadrilaterals.clear();
   tissue.regions["all"] = CellSet(count, true);
   return tissue;
 }

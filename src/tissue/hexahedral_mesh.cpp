@@ -8,6 +8,7 @@
 
 #include "tissue/lattice.hpp"
 #include "tissue/mesh_faces.hpp"
+#include "tissue/mesher.hpp"
 
 namespace plica {
 namespace {
@@ -143,22 +144,6 @@ class LatticeNodes {
   std::unordered_map<Key, NodeId, Hash> shared_;
 };
 
-/// Leaves out the nodes that no cell uses; the others keep their order.
-Vectors drop_unused_nodes(const Vectors& points, std::vector<CellLattice>& cells) {
-  std::vector<NodeId> number(points.size());
-  for (const CellLattice& cell : cells)
-    for (const NodeId node : cell.nodes) number[node.index()] = NodeId(0);
-  Vectors kept;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!number[i].valid()) continue;
-    number[i] = NodeId(kept.size());
-    kept.push_back(points[i]);
-  }
-  for (CellLattice& cell : cells)
-    for (NodeId& node : cell.nodes) node = number[node.index()];
-  return kept;
-}
-
 /// Cells may be too warped to be cut up: det J is positive at their corners but not within.
 void check_elements(const Tissue& tissue) {
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
@@ -252,8 +237,8 @@ Tissue tissue_from_mesh(HexahedralMesh mesh, const MeshOptions& options) {
     lattice.has_basal = faces.on_surface({cell, opposite_face(apical[cell])});
     lattice.add_nodes([&](int u, int v, int w) { return nodes.node(corners, {u, v, w}); });
   }
-  positions = drop_unused_nodes(positions, lattices);
   Tissue tissue = tissue_from_lattices(lattices, std::move(positions));
+  drop_unused_nodes(tissue);
   check_elements(tissue);
   tissue.cell_arrays = std::move(mesh.arrays);
   tissue.remarks = std::move(mesh.remarks);

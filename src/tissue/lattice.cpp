@@ -1,8 +1,9 @@
 #include "tissue/lattice.hpp"
 
 #include <cmath>
+#include <utility>
 
-#include "tissue/polygon_cell.hpp"
+#include "tissue/mesher.hpp"
 
 namespace plica {
 namespace {
@@ -76,27 +77,25 @@ void set_lines(const CellLattice& lattice, Cell& cell) {
   for (int e = 8; e < 12; ++e) cell.lines.push_back({cell.edges[e], 1});
 }
 
-void set_walls(const Vectors& rest_positions, Cell& cell) {
-  for (const NodeId corner : cell.corners) cell.rest_shape.push_back(rest_positions[corner.index()]);
-  if (cell.element_count > 1) return;
-  cell.quadrilaterals = {{{{0, 0}, {1, 0}, {2, 0}, {3, 0}}}};
-  cell.walls = walls_between_corners(cell);
-}
-
-// Calls take(nodes of the element, w) for each element of the cell, u fastest.
-template <class Take>
-void for_elements(const CellLattice& lattice, const Take& take) {
+// Columns of lattices are nodes above each other.
+void add_polygon(const CellLattice& lattice, SheetOfColumns& sheet) {
   const auto [nu, nv, nw] = lattice.elements;
-  for (int w = 0; w < nw; ++w)
-    for (int v = 0; v < nv; ++v)
-      for (int u = 0; u < nu; ++u) {
-        std::array<NodeId, 8> element;
-        for (int i = 0; i < 8; ++i) {
-          const Vec3& r = hex_reference_nodes[i];
-          element[i] = lattice.node(u + (r.x() > 0), v + (r.y() > 0), w + (r.z() > 0));
-        }
-        take(element, w);
-      }
+  const auto column = [&](int u, int v) {
+    SheetOfColumns::Column nodes;
+    for (int w = 0; w <= lattice.elements[2]; ++w) nodes.push_back(lattice.node(u, v, w));
+    return nodes;
+  };
+  const auto add_side = [&](int u, int v, int du, int dv, int parts) {
+    std::vector<SheetOfColumns::Column> stops;
+    for (int part = 0; part < parts; ++part) stops.push_back(column(u + part * du, v + part * dv));
+    sheet.add_side(stops);
+  };
+  Polygon& polygon = sheet.add_cell(lattice.has_basal, lattice.has_apical);
+  add_side(0, 0, 1, 0, nu), add_side(nu, 0, 0, 1, nv), add_side(nu, nv, -1, 0, nu), add_side(0, nv, 0, -1, nv);
+  for (int v = 0; v < nv; ++v)
+    for (int u = 0; u < nu; ++u)
+      polygon.quadrilaterals.push_back({sheet.place(column(u, v)), sheet.place(column(u + 1, v)),
+                                        sheet.place(column(u + 1, v + 1)), sheet.place(column(u, v + 1))});
 }
 
 }  // namespace
@@ -106,56 +105,21 @@ void set_corners_and_lines(const CellLattice& lattice, const Vectors& rest_posit
   set_lines(lattice, cell);
 }
 
-void add_element(const std::array<NodeId, 8>& element, CellId id, bool is_basal, bool is_apical, Tissue& tissue) {
-  const ElementId element_id(tissue.elements.size());
-  tissue.elements.push_back(element);
-  tissue.element_cell.push_back(id);
-  tissue.element_rest_shape.push_back(gather(tissue.rest_positions, element));
-  if (is_basal) tissue.basal_facets.push_back({{element[0], element[3], element[2], element[1]}, id, element_id});
-  if (is_apical) tissue.apical_facets.push_back({{element[4], element[5], element[6], element[7]}, id, element_id});
-}
-
-void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue) {
-  for_elements(lattice, [&](const std::array<NodeId, 8>& element, int w) {
-    add_element(element, id, w == 0 && lattice.has_basal, w == lattice.elements[2] - 1 && lattice.has_apical, tissue);
-  });
-}
-
-void number_as_elements_come(std::vector<CellLattice>& cells, Vectors& rest_positions) {
-  std::vector<NodeId> number(rest_positions.size());
-  std::vector<char> has_number(rest_positions.size(), 0);
-  Vectors in_order;
-  in_order.reserve(rest_positions.size());
-  for (const CellLattice& lattice : cells)
-    for_elements(lattice, [&](const std::array<NodeId, 8>& element, int) {
-      for (const NodeId node : element) {
-        if (has_number[node.index()]) continue;
-        has_number[node.index()] = 1;
-        number[node.index()] = NodeId(in_order.size());
-        in_order.push_back(rest_positions[node.index()]);
-      }
-    });
-  for (CellLattice& lattice : cells)
-    for (NodeId& node : lattice.nodes) node = number[node.index()];
-  rest_positions = std::move(in_order);
-}
-
 Tissue tissue_from_lattices(const std::vector<CellLattice>& cells, Vectors rest_positions) {
   Tissue tissue;
   tissue.rest_positions = std::move(rest_positions);
-  tissue.cells.reserve(cells.size());
+  SheetOfColumns sheet;
   for (const CellLattice& lattice : cells) {
-    Cell cell;
-    cell.first_element = ElementId(tissue.elements.size());
-    cell.element_count = lattice.elements[0] * lattice.elements[1] * lattice.elements[2];
+    add_polygon(lattice, sheet);
+    Cell& cell = tissue.cells.emplace_back();
     cell.grid_place = lattice.grid_place;
     cell.is_of_grid = true;
-    set_corners_and_lines(lattice, tissue.rest_positions, cell);
-    set_walls(tissue.rest_positions, cell);
     cell.lineage.id = tissue.next_cell_id++;
-    add_elements_and_facets(lattice, CellId(tissue.cells.size()), tissue);
-    tissue.cells.push_back(std::move(cell));
+    set_corners_and_lines(lattice, tissue.rest_positions, cell);
+    for (const NodeId corner : cell.corners) cell.rest_shape.push_back(tissue.rest_positions[corner.index()]);
   }
+  tissue.sheet = sheet.sheet();
+  mesh(tissue);
   tissue.regions["all"] = CellSet(tissue.cells.size(), true);
   return tissue;
 }

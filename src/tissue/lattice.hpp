@@ -31,16 +31,6 @@ struct CellLattice {
   }
 };
 
-/// Renumber the nodes in the order in which elements use them, so that data of nearby elements are close in memory.
-/// Every node must belong to a cell.
-void number_as_elements_come(std::vector<CellLattice>& cells, Vectors& rest_positions);
-
-/// Append an element of a cell, with its rest shape, and with facets where its faces are on the surface of the tissue.
-void add_element(const std::array<NodeId, 8>& element, CellId id, bool is_basal, bool is_apical, Tissue& tissue);
-
-/// Append the elements and facets of the cell to the tissue, with rest shapes from its rest positions, u fastest.
-void add_elements_and_facets(const CellLattice& lattice, CellId id, Tissue& tissue);
-
 /// Set corners, edges and lines of a grid cell.
 void set_corners_and_lines(const CellLattice& lattice, const Vectors& rest_positions, Cell& cell);
 

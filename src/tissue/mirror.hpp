@@ -7,17 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "tissue/division.hpp"
-#include "tissue/tissue.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 
-/// Keep only the given cells, with their elements and facets; nodes stay, used or not. The result maps data per cell,
-/// as after a division.
-Division keep_only(Tissue& tissue, const CellSet& cells);
-
-/// Remove nodes without elements. Return former node numbers: new node to old.
-std::vector<NodeId> drop_unused_nodes(Tissue& tissue);
+/// Keep only the given cells, with their elements and facets; nodes stay, used or not.
+TissueChange keep_only(Tissue& tissue, const CellSet& cells);
 
 /// Mapping of nodes and cells of the full tissue to those of a side. Empty for a tissue without mirror planes, where
 /// everything is its own image.

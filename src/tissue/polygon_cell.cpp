@@ -214,41 +214,14 @@ void set_polygon_edges(const PolygonChains& chains, const Vectors& rest_position
   for (const CellEdge& edge : cell.edges) cell.lines.push_back({edge, 1});
 }
 
-std::vector<std::vector<WallStop>> walls_between_corners(const Cell& cell) {
-  std::vector<std::vector<WallStop>> walls;
-  const auto basal = cell.basal_corners(), apical = cell.apical_corners();
-  for (std::size_t i = 0; i < cell.sides(); ++i) {
-    const std::size_t next = (i + 1) % cell.sides();
-    walls.push_back({{0, basal[i], apical[i]}, {1, basal[next], apical[next]}});
-  }
-  return walls;
-}
-
-void set_corners_and_lines_of_walls(const Vectors& rest_positions, Cell& cell) {
-  PolygonChains chains;
-  for (const auto& wall : cell.walls) {
-    std::vector<NodeId> basal, apical;
-    for (const WallStop& stop : wall) basal.push_back(stop.basal), apical.push_back(stop.apical);
-    chains.lateral.push_back({basal.front(), apical.front()});
-    chains.basal.push_back(std::move(basal));
-    chains.apical.push_back(std::move(apical));
-  }
-  cell.corners.clear();
-  for (const auto* sides : {&chains.basal, &chains.apical})
-    for (const auto& chain : *sides) cell.corners.push_back(chain.front());
-  set_polygon_edges(chains, rest_positions, cell);
-}
-
 std::vector<bool> inner_nodes_of_polygons(const Tissue& tissue) {
   std::vector<bool> is_inner(tissue.node_count(), false);
-  for (const auto* facets : {&tissue.basal_facets, &tissue.apical_facets})
-    for (const Facet& facet : *facets)
-      for (const NodeId node : facet.nodes)
-        if (node.index() < tissue.free_node_count() && !tissue.cells[facet.cell.index()].is_of_grid)
-          is_inner[node.index()] = true;
-  for (const Cell& cell : tissue.cells)
-    for (const CellEdge& edge : cell.edges)
-      for (const NodeId node : edge.nodes) is_inner[node.index()] = false;
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c)
+    if (!tissue.cells[c].is_of_grid)
+      for (const VertexId vertex : tissue.sheet.cells[c].inner) {
+        const std::vector<NodeId>& nodes = tissue.sheet.vertices[vertex.index()].nodes;
+        for (const NodeId node : {nodes.front(), nodes.back()}) is_inner[node.index()] = true;
+      }
   return is_inner;
 }
 

@@ -67,12 +67,6 @@ double alignment_with_x(const Vec3& way, const Vec3& outward);
 /// Set edges and lines. Edge directions follow from reference positions of their ends.
 void set_polygon_edges(const PolygonChains& chains, const Vectors& rest_positions, Cell& cell);
 
-/// Return the lateral faces of a cell with stops at corners only, as required by division.
-std::vector<std::vector<WallStop>> walls_between_corners(const Cell& cell);
-
-/// Set corners, edges and lines of a cell from the stops of its lateral faces.
-void set_corners_and_lines_of_walls(const Vectors& rest_positions, Cell& cell);
-
 /// Return a flag per node: whether it is a free node inside the apical or basal face of a polygonal cell, on none of
 /// its edges. Nothing but the cell itself moves such a node, so it may stand out of the surface of the tissue as a
 /// dimple. (Grid cells have none: their inner lines run on from cell to cell.)

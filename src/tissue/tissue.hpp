@@ -18,6 +18,7 @@
 #include "core/vector.hpp"
 #include "tissue/hexahedron.hpp"
 #include "tissue/outer_shape.hpp"
+#include "tissue/sheet.hpp"
 
 namespace plica {
 
@@ -58,30 +59,6 @@ struct GridPlace {
   std::array<int, 2> count;  // columns and rows of that face
 };
 
-/// Stop on a lateral face with a basal and an apical node: a corner of the cell, or a place where the neighbour was
-/// cut.
-struct WallStop {
-  double at;  // along the wall, from 0 to 1
-  NodeId basal, apical;
-
-  bool operator==(const WallStop&) const = default;
-  static auto parts(auto& stop) { return std::tie(stop.at, stop.basal, stop.apical); }
-};
-
-/// Place on the outline of the polygon of a cell: on a lateral face, from its first corner (0) to the next (1); or the
-/// mean of the corners.
-struct OutlinePlace {
-  int wall = -1;  // -1: the mean of the corners
-  double at = 0;
-
-  [[nodiscard]] bool is_middle() const { return wall < 0; }
-  bool operator==(const OutlinePlace&) const = default;
-  static auto parts(auto& place) { return std::tie(place.wall, place.at); }
-};
-
-/// Quadrilateral of a split polygon: its corners, counter-clockwise seen from outside.
-using OutlineQuad = std::array<OutlinePlace, 4>;
-
 /// Lineage of a cell. Ids are unique and never reused, independent of the position in `Tissue::cells`.
 struct Lineage {
   int id = -1;
@@ -100,10 +77,6 @@ struct Cell {
   std::vector<CellEdge> edges;          // grid cells: in the order of hex_edges; else basal, apical, lateral
   std::vector<CellLine> lines;          // contractile lines: the edges, except in grid cells of several elements
   std::optional<GridPlace> grid_place;  // built embryos only
-  // Data for division (division.hpp): lateral faces as chains of stops between corners, and the split of the polygon.
-  // Empty in cells with inner lines: several elements of a grid, kites, layers.
-  std::vector<std::vector<WallStop>> walls;
-  std::vector<OutlineQuad> quadrilaterals;
   std::vector<Vec3> rest_shape;         // um; corners
   std::optional<double> target_volume;  // um^3; that of the rest shape, except after a division
   Lineage lineage;
@@ -114,16 +87,22 @@ struct Cell {
   [[nodiscard]] std::span<const NodeId> basal_corners() const { return std::span(corners).first(sides()); }
   [[nodiscard]] std::span<const NodeId> apical_corners() const { return std::span(corners).last(sides()); }
 
-  /// Members that divisions change and from which the mesh follows (division.hpp).
-  static auto parts(auto& cell) {
-    return std::tie(cell.walls, cell.quadrilaterals, cell.rest_shape, cell.target_volume, cell.lineage);
-  }
+  /// Members that do not follow from the sheet.
+  static auto parts(auto& cell) { return std::tie(cell.rest_shape, cell.target_volume, cell.lineage); }
+};
+
+/// Values by cell, which follow changes of the tissue (tissue_change.hpp).
+template <class Value>
+struct ByCell : std::vector<Value> {
+  using std::vector<Value>::vector;
+  ByCell() = default;
+  ByCell(std::vector<Value> values) : std::vector<Value>(std::move(values)) {}  // NOLINT: meant to convert
 };
 
 /// Cell set: one flag per cell.
-using CellSet = std::vector<bool>;
+using CellSet = ByCell<bool>;
 
-using CellArray = std::vector<double>;
+using CellArray = ByCell<double>;
 
 /// Position of a hanging node: weighted mean of free nodes; weights sum to 1.
 using NodeMean = std::vector<std::pair<NodeId, double>>;
@@ -135,12 +114,14 @@ inline Vec3 mean_of(const NodeMean& mean, std::span<const Vec3> vectors) {
 }
 
 struct Tissue {
+  Sheet sheet;  // topology of cells; from it and the rest positions of free nodes follow elements, facets and lines
   // Nodes: first free ones, then hanging ones. A free node keeps its number permanently.
   Vectors rest_positions;         // nodes; um
   std::vector<NodeMean> hanging;  // last nodes; with polygons or after divisions
   // Offset of each hanging node from its mean, um. Empty unless periodic: there, a node at the far end of a period is
   // an image, which hangs on one node only.
   Vectors hanging_shifts;
+  Vec3 period = Vec3::Zero();                   // lengths along x, y, z, um; 0 if not periodic
   std::vector<std::array<NodeId, 8>> elements;  // VTK order
   std::vector<CellId> element_cell;             // elements
   std::vector<HexPoints> element_rest_shape;    // elements; um. Daughters inherit it, independent of node positions
@@ -156,6 +137,8 @@ struct Tissue {
   // have coordinate 0 there.
   std::array<bool, 3> is_mirrored = {false, false, false};
   bool is_endless = false;  // along x: a slice, whose ends are shared with adjacent slices
+
+  static auto parts_by_cell(auto& tissue) { return std::tie(tissue.cell_arrays, tissue.regions); }
 
   /// Return the fraction of an object spanned by these nodes that belongs to this side: 1/2 per mirror plane that
   /// contains all of them.

@@ -81,24 +81,25 @@ class MaxwellSprings final : public Law {
   }
 
   // A spring whose edge is cut becomes two in series.
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const Division& division,
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const TissueChange& change,
                                                     std::span<const Vec3>) const override {
     std::vector<Spring> springs;
-    for_parts(division, [&](const Spring& part, std::size_t, double) { springs.push_back(part); });
+    for_parts(change, [&](const Spring& part, std::size_t, double) { springs.push_back(part); });
     return std::make_unique<MaxwellSprings>(std::move(springs), relaxation_s_);
   }
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue&,
-                                                            const Division& division) const override {
+                                                            const TissueChange& change,
+                                                            const ChangePositions&) const override {
     std::vector<double> lengths;
     for (const std::size_t first : {std::size_t{0}, springs_.size()})
-      for_parts(division, [&](const Spring&, std::size_t whole, double share) {
+      for_parts(change, [&](const Spring&, std::size_t whole, double share) {
         lengths.push_back(share * internal[first + whole]);
       });
     return lengths;
   }
   // Which edges were cut, the tissue alone does not tell.
   [[nodiscard]] std::vector<double> past() const override { return as_numbers(springs_); }
-  [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const Division&, std::span<const Vec3>,
+  [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const TissueChange&, std::span<const Vec3>,
                                               std::span<const double> past) const override {
     std::vector<Spring> springs;
     take_numbers({past.begin(), past.end()}, springs);
@@ -137,11 +138,11 @@ class MaxwellSprings final : public Law {
 
   // Each spring of the tissue after the division: itself, of which it is a part, and which share of its length.
   template <class Take>
-  void for_parts(const Division& division, const Take& take) const {
+  void for_parts(const TissueChange& change, const Take& take) const {
     for (std::size_t k = 0; k < springs_.size(); ++k) {
       const auto& [a, b, stiffness, rest_length] = springs_[k];
-      const auto midway = division.node_midway.find(std::minmax(a, b));
-      if (midway == division.node_midway.end()) {
+      const auto midway = change.node_midway.find(std::minmax(a, b));
+      if (midway == change.node_midway.end()) {
         take(springs_[k], k, 1.0);
         continue;
       }
@@ -190,11 +191,11 @@ TEST(MaxwellSprings, ForcesAreTheSameThroughADivision) {
     return forces_of(*model.laws[0], still);
   };
   const Vectors before = forces();
-  const Division division =
+  const TissueChange division =
       divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 0}}, {{CellId(3), 1}}});
   const Vectors after = forces();
   ASSERT_GT(state.internals[0].size(), before.size());
-  for (std::size_t n = 0; n < division.free_nodes_before; ++n) EXPECT_LE((after[n] - before[n]).norm(), 1e-11) << n;
+  for (std::size_t n = 0; n < division.kept_nodes(); ++n) EXPECT_LE((after[n] - before[n]).norm(), 1e-11) << n;
 }
 
 TEST(MaxwellSprings, WorkWithEveryLinearSolver) { expect_same_run_with_every_solver(maxwell); }

@@ -73,11 +73,11 @@ TEST(DivideCells, KeepsTheTensionOfSprings) {
         return result;
       };
       const Vectors before = forces();
-      const Division division = divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
+      const TissueChange division = divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
       previous = with_new_nodes(model.tissue, division, previous);
       Vectors after = forces();
       for (std::size_t n = 0; n < after.size(); ++n) {
-        const Vec3 expected = n < division.free_nodes_before ? before[n] : Vec3::Zero();
+        const Vec3 expected = n < division.kept_nodes() ? before[n] : Vec3::Zero();
         worst = std::max(worst, (after[n] - expected).norm() / largest(before));
       }
     }
@@ -92,14 +92,14 @@ TEST(DivideCells, HandsPressuresHoldsAndContactsOn) {
   State state = rest_state(model);
   for (std::size_t c = 0; c < state.multipliers.size(); ++c) state.multipliers[c] = static_cast<double>(c);
   const std::size_t contacts = state.on_obstacle.size();
-  const Division division = divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(40), 0}}});
+  const TissueChange division = divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(40), 0}}});
   EXPECT_EQ(state.multipliers.at(450), 40);
   EXPECT_EQ(model.held[3], (std::array<bool, 3>{true, false, true}));
   EXPECT_EQ(model.held.size(), model.tissue.node_count());
   EXPECT_EQ(state.on_obstacle.size(), contacts + 2);
   EXPECT_EQ(model.obstacles.front()->nodes().size(), contacts + 2);
   for (std::size_t k = 0; k < state.on_obstacle.size(); ++k)
-    EXPECT_EQ(state.on_obstacle[k] != 0, model.obstacles.front()->nodes()[k].index() < division.free_nodes_before);
+    EXPECT_EQ(state.on_obstacle[k] != 0, model.obstacles.front()->nodes()[k].index() < division.kept_nodes());
 }
 
 void grow(Model& model, double time_s) {
@@ -251,9 +251,9 @@ TEST(DivideCells, LeavesNewNodesThatAreHeldAtRest) {
     const Vec3 before = momentum_of(model, state);
     std::vector<PlannedDivision> across;  // every cell: new nodes lie in the middle of the edges along x
     for (int c = 0; c < 12; ++c) across.push_back({{CellId(c), 0}, 0, 0.5});
-    const Division division = divide_cells(model, state, across);
+    const TissueChange division = divide_cells(model, state, across);
     int held = 0, free = 0;
-    for (std::size_t n = division.free_nodes_before; n < model.tissue.free_node_count(); ++n) {
+    for (std::size_t n = division.kept_nodes(); n < model.tissue.free_node_count(); ++n) {
       ++(model.held[n][0] ? held : free);
       EXPECT_EQ(model.held[n], (std::array<bool, 3>{lies_beyond(n, -5), false, false})) << n;
       EXPECT_TRUE(!model.held[n][0] || state.velocities[n].x() == 0) << n;

@@ -317,22 +317,32 @@ TEST_F(CheckpointTest, ChangesThatDoNotFitTheEmbryoAreRefused) {
   refused([](ModelMemory& m) { m.laws.back().push_back(1); });
   refused([](ModelMemory& m) { m.growths.push_back({.cell = CellId(1000000), .rest_from = {}, .rest_to = {}}); });
   refused([](ModelMemory& m) { m.growths.push_back({.cell = CellId(0), .rest_from = {}, .rest_to = {}}); });
-  const auto refused_cell = [&](const auto& harm) { refused([&](ModelMemory& m) { harm(m.cells.front()); }); };
-  refused_cell([](Cell& cell) { cell.walls.clear(); });
-  refused_cell([](Cell& cell) { cell.walls.pop_back(); });
-  refused_cell([](Cell& cell) { cell.walls[1].clear(); });
-  refused_cell([](Cell& cell) { cell.walls[1].pop_back(); });
-  refused_cell([](Cell& cell) { cell.walls[1].back().at = 0.75; });
-  refused_cell([](Cell& cell) { cell.walls[1].insert(cell.walls[1].begin(), cell.walls[1].front()); });
-  refused_cell([](Cell& cell) { cell.walls[1].front().basal = NodeId(1000000); });
-  refused_cell([](Cell& cell) { cell.walls[1].front().apical = NodeId(); });
-  refused_cell([](Cell& cell) { std::swap(cell.walls[0], cell.walls[1]); });
-  refused_cell([](Cell& cell) { cell.quadrilaterals.clear(); });
-  refused_cell([](Cell& cell) { cell.quadrilaterals.resize(1000, cell.quadrilaterals.front()); });
-  refused_cell([](Cell& cell) { cell.quadrilaterals.front()[2].wall = 4; });
-  refused_cell([](Cell& cell) { cell.quadrilaterals.front()[2].at = -0.5; });
-  refused_cell([](Cell& cell) { cell.rest_shape.pop_back(); });
-  EXPECT_EQ(cases, 27);
+  refused([](ModelMemory& m) { m.cells.front().rest_shape.pop_back(); });
+  refused([](ModelMemory& m) { m.sheet.cells.pop_back(); });
+  refused([](ModelMemory& m) { m.sheet.vertices.pop_back(); });
+  const auto refused_vertex = [&](const auto& harm) {
+    refused([&](ModelMemory& m) { harm(m.sheet.vertices.front()); });
+  };
+  refused_vertex([](Vertex& vertex) { vertex.nodes.clear(); });
+  refused_vertex([](Vertex& vertex) { vertex.nodes.pop_back(); });
+  refused_vertex([](Vertex& vertex) { vertex.nodes.front() = NodeId(1000000); });
+  refused_vertex([](Vertex& vertex) { vertex.nodes.back() = NodeId(); });
+  refused_vertex([](Vertex& vertex) { vertex.original = VertexId(1); });
+  const auto refused_polygon = [&](const auto& harm) { refused([&](ModelMemory& m) { harm(m.sheet.cells.front()); }); };
+  refused_polygon([](Polygon& polygon) { polygon.ring.clear(); });
+  refused_polygon([](Polygon& polygon) { polygon.ring.pop_back(); });
+  refused_polygon([](Polygon& polygon) { polygon.ring.back().at = 1.5; });
+  refused_polygon([](Polygon& polygon) { polygon.ring.front().at = 0.5; });
+  refused_polygon([](Polygon& polygon) { polygon.ring.insert(polygon.ring.begin(), polygon.ring.front()); });
+  refused_polygon([](Polygon& polygon) { polygon.ring[1].vertex = VertexId(1000000); });
+  refused_polygon([](Polygon& polygon) { polygon.ring[1].vertex = VertexId(); });
+  refused_polygon([](Polygon& polygon) { polygon.inner.emplace_back(1000000); });
+  refused_polygon([](Polygon& polygon) { polygon.quadrilaterals.clear(); });
+  refused_polygon([](Polygon& polygon) { polygon.quadrilaterals.resize(1000, polygon.quadrilaterals.front()); });
+  refused_polygon([](Polygon& polygon) { polygon.quadrilaterals.front()[2].wall = 4; });
+  refused_polygon([](Polygon& polygon) { polygon.quadrilaterals.front()[2].at = -0.5; });
+  refused_polygon([](Polygon& polygon) { polygon.quadrilaterals.front()[2] = {-1, 0, 0}; });
+  EXPECT_EQ(cases, 34);
 }
 
 TEST_F(CheckpointTest, ScenariosThatMayChange) {

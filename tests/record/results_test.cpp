@@ -325,7 +325,7 @@ TEST(SurfaceMesh, OfDividedCellsHasNoGaps) {
     std::vector<CellCut> cuts;
     for (std::size_t c = 7; c < tissue.cells.size(); c += 4)
       cuts.push_back(cut_by(DivisionPlane::longest_axis, tissue, CellId(c), positions));
-    const Division division = divide(tissue, cuts, 0, positions);
+    const TissueChange division = divide(tissue, cuts, 0, positions);
     positions = with_new_nodes(tissue, division, positions);
     for (Vec3& x : positions) x += Vec3(0.3 * std::sin(x.y()), 0.3 * std::cos(2 * x.x()), 0);
     tissue.place_hanging(positions);

@@ -191,8 +191,6 @@ TEST(InteriorKeys, ModuliByRegionSayWhatWouldBeRight) {
       {soft + "profile = { shape = \"linear\", half_width_um = 20 }",
        "3: elasticity.soft.profile: the modulus of cell 0 at (-154.4, -67.53, -74.13) um would be 0; set profile.edge "
        "or profile.factor above 0"},
-      {soft + "young_modulus_Pa = 5\nheight_percent = [0, 50]\n[division.d]\nregion = \"all\"\nat_s = 9",
-       "4: elasticity.soft.height_percent: cells with layers cannot divide; remove height_percent, or [division]"},
       {"[elasticity.soft]\nregion = \"belly\"\nyoung_modulus_Pa = 5",
        "2: elasticity.soft.region: region \"belly\" does not exist; use one of: all"},
       {"[elasticity]\nmodel = \"shape-memory\"\n" + soft + "young_modulus_Pa = 5",

@@ -68,12 +68,12 @@ struct Fields {
   }
 
   void take_changes(const ModelMemory& changes) {
-    const auto& [origin, rest_positions, cells, next_cell_id, held, growths, laws] = changes;
+    const auto& [origin, sheet, rest_positions, cells, next_cell_id, held, growths, laws] = changes;
     take("origin", as_numbers(origin)), take("rest_positions", rest_positions), take("next_cell_id", next_cell_id);
     take("held", as_numbers(held)), take("growths", as_numbers(growths)), take("laws", laws);
-    for (const char* part : {"walls", "quadrilaterals", "rest_shape", "target_volume", "lineage"}) numbers[part];
+    take("vertices", as_numbers(sheet.vertices)), take("polygons", as_numbers(sheet.cells));
+    for (const char* part : {"rest_shape", "target_volume", "lineage"}) numbers[part];
     for (const Cell& cell : cells) {
-      take("walls", as_numbers(cell.walls)), take("quadrilaterals", as_numbers(cell.quadrilaterals));
       take("rest_shape", cell.rest_shape), take("target_volume", cell.target_volume);
       take("lineage", as_numbers(cell.lineage));
     }

@@ -4,6 +4,7 @@
 #include "mechanics/division.hpp"
 #include "support/models.hpp"
 #include "support/tissues.hpp"
+#include "tissue/faces.hpp"
 
 namespace plica::support {
 
@@ -20,16 +21,8 @@ inline double volume_inside_boundary(const Tissue& tissue, const Vectors& positi
   double volume = 0;
   for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets})
     for (const Facet& facet : *facets) volume += cone(facet.nodes, positions);
-  std::map<std::pair<NodeId, NodeId>, std::array<NodeId, 4>> outer;  // facets of walls, by their apical edge
-  for (const Cell& cell : tissue.cells)
-    for (const auto& stops : cell.walls)
-      for (std::size_t i = 1; i < stops.size(); ++i) {
-        const WallStop &from = stops[i - 1], &to = stops[i];
-        const auto edge = std::minmax(from.apical, to.apical);
-        const std::array<NodeId, 4> facet = {from.basal, to.basal, to.apical, from.apical};
-        if (!outer.emplace(edge, facet).second) outer.erase(edge);
-      }
-  for (const auto& [edge, facet] : outer) volume += cone(facet, positions);
+  for (const Face& face : faces_of(tissue, CellSide::lateral))
+    if (!face.beyond) volume += cone(face.nodes, positions);
   return volume;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "mechanics/law.hpp"
-#include "tissue/division.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica::support {
 
@@ -22,10 +22,10 @@ class NodalForces final : public Law {
   }
   void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}
   void add_tangent(const Step&, TangentSink&) const override {}
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3>) const override {
     Vectors loads = loads_;
-    loads.resize(division.free_nodes_before);
+    loads.resize(change.kept_nodes());
     loads.resize(tissue.node_count(), Vec3::Zero());
     return std::make_unique<NodalForces>(std::move(loads));
   }

@@ -18,7 +18,7 @@ Tissue cut(Tissue tissue, const std::vector<CellCut>& cuts) {
 
 TEST(Division, OfTheMiddleOfThreeCellsGivesFourFreeNodesAndASharedFacet) {
   Tissue tissue = build_block(three_cells);
-  const Division division = divide(tissue, std::vector<CellCut>{{CellId(1), 0}}, 60);
+  const TissueChange division = divide(tissue, std::vector<CellCut>{{CellId(1), 0}}, 60);
   ASSERT_EQ(tissue.cells.size(), 4u);
   EXPECT_EQ(tissue.elements.size(), 4u);
   EXPECT_EQ(tissue.free_node_count(), 20u);
@@ -65,7 +65,7 @@ TEST(Division, LeavesTheVolumesOfOtherCellsAndTheirSumAsTheyWere) {
       std::map<int, double> before;
       for (const Cell& cell : tissue.cells) before[cell.lineage.id] = cell_volume(tissue, cell, positions);
       const double sum_before = volume_of_cells(tissue, positions);
-      const Division division = divide(tissue, cuts_of(random_divisions(tissue, 0.5, random)), round);
+      const TissueChange division = divide(tissue, cuts_of(random_divisions(tissue, 0.5, random)), round);
       positions = with_new_nodes(tissue, division, positions);
       for (const Cell& cell : tissue.cells)
         if (before.contains(cell.lineage.id))
@@ -113,11 +113,11 @@ TEST(Division, GivesAboutFourFreeNodesACut) {
     for (const CellCut& cut : cuts) {
       std::set<double> places;  // along u or v: walls 2 and 3 run against them
       for (const int wall : {1 - cut.first_wall, 3 - cut.first_wall})
-        for (const WallStop& stop : tissue.cells[cut.cell.index()].walls[wall])
-          places.insert(wall < 2 ? stop.at : 1 - stop.at);
-      lines += places.size() - 2;
+        for (const Stop& stop : tissue.sheet.cells[cut.cell.index()].sides()[static_cast<std::size_t>(wall)])
+          if (stop.at > 0) places.insert(wall < 2 ? stop.at : 1 - stop.at);
+      lines += places.size();
     }
-    const Division division = divide(tissue, cuts, round);
+    const TissueChange division = divide(tissue, cuts, round);
     std::set<NodeId> ends;  // corners of the new facets
     for (const auto& [low, high] : division.daughters)
       for (const NodeId node : tissue.cells[low.index()].corners)
@@ -173,7 +173,7 @@ TEST(Division, OfNeighboursAtOnceDoesNotDependOnTheirOrder) {
 TEST(Division, RestShapesOfDaughtersAreTheHalvesOfTheirMothers) {
   Tissue tissue = distorted_block(three_cells, 3, 4);
   const HexPoints mother = hexahedron(tissue.cells[1].rest_shape);
-  const Division division = divide(tissue, std::vector<CellCut>{{CellId(1), 0}}, 0);
+  const TissueChange division = divide(tissue, std::vector<CellCut>{{CellId(1), 0}}, 0);
   const HexPoints low = hexahedron(tissue.cells[division.daughters[0][0].index()].rest_shape);
   const HexPoints high = hexahedron(tissue.cells[division.daughters[0][1].index()].rest_shape);
   for (const int i : {0, 3, 4, 7}) EXPECT_LE((low[i] - mother[i]).norm(), 1e-13);
@@ -188,7 +188,7 @@ TEST(Division, RestShapesOfDaughtersAreTheHalvesOfTheirMothers) {
 TEST(Division, KeepsRegionsArraysAndPlaces) {
   Tissue tissue = build_block(three_cells);
   tissue.regions["middle"] = {false, true, false};
-  const Division division = divide(tissue, std::vector<CellCut>{{CellId(1), 0}}, 0);
+  const TissueChange division = divide(tissue, std::vector<CellCut>{{CellId(1), 0}}, 0);
   EXPECT_EQ(tissue.regions["middle"], (CellSet{false, true, false, true}));
   EXPECT_EQ(tissue.regions["all"], CellSet(4, true));
   EXPECT_EQ(inherited(division, std::vector<int>{10, 11, 12}), (std::vector<int>{10, 11, 12, 11}));
@@ -203,16 +203,18 @@ TEST(Division, IsRefusedWhereCellsHaveSeveralElementsOrLayers) {
   EXPECT_TRUE(why_indivisible(build_block(layered)));
 }
 
-Tissue bent_sheet(unsigned seed) {
+Tissue bent_sheet(unsigned seed, PolygonSplit split = PolygonSplit::diagonals, int layers = 1) {
   return tissue_from_prisms(bent(irregular_polygons(12, 12, 8, 20, 0.1, seed),
                                  [](const Vec3& x) {
                                    const double radius = 90 + x.z(), angle = x.x() / 90;
                                    return Vec3(radius * std::sin(angle), x.y(), radius * std::cos(angle));
                                  }),
-                            PolygonSplit::diagonals, 1);
+                            split, layers);
 }
 
-Tissue egg() { return build_egg({460, 180, 180, {}, {}}, 300, 1, {.height_um = 25}); }
+Tissue egg(PolygonSplit split = PolygonSplit::diagonals, int layers = 1) {
+  return build_egg({460, 180, 180, {}, {}}, 300, 1, {.height_um = 25, .split = split, .layers = layers});
+}
 
 // Across the longest axis, along the embryo or across it, of cells at random.
 std::vector<CellCut> random_cuts(const Tissue& tissue, const Vectors& positions, std::size_t count, Random& random) {
@@ -253,7 +255,7 @@ Errors divide_three_times(Tissue tissue, double size_um, unsigned seed) {
     std::map<int, double> before;
     for (const Cell& cell : tissue.cells) before[cell.lineage.id] = cell_volume(tissue, cell, positions);
     const std::vector<CellCut> cuts = random_cuts(tissue, positions, 70, random);
-    const Division division = divide(tissue, cuts, round, positions);
+    const TissueChange division = divide(tissue, cuts, round, positions);
     positions = with_new_nodes(tissue, division, positions);
     errors.divisions += static_cast<int>(cuts.size());
     errors.least_jacobian = std::min(errors.least_jacobian, worst_element(tissue, positions));
@@ -299,7 +301,7 @@ TEST(PolygonDivision, OfAHexagonGivesTwoPentagonsAndStopsInItsNeighbours) {
   Tissue tissue = tissue_from_prisms(honeycomb(3, 3, 8, 20), PolygonSplit::diagonals, 1);
   const std::size_t middle = 4, nodes = tissue.free_node_count();
   ASSERT_EQ(tissue.cells[middle].sides(), 6u);
-  const Division division = divide(tissue, std::vector<CellCut>{{CellId(middle), 0, 3}}, 0);
+  const TissueChange division = divide(tissue, std::vector<CellCut>{{CellId(middle), 0, 3}}, 0);
   EXPECT_EQ(tissue.cells.size(), 10u);
   EXPECT_EQ(tissue.free_node_count(), nodes + 4);
   for (const CellId daughter : division.daughters[0]) EXPECT_EQ(tissue.cells[daughter.index()].sides(), 5u);
@@ -307,7 +309,7 @@ TEST(PolygonDivision, OfAHexagonGivesTwoPentagonsAndStopsInItsNeighbours) {
   for (std::size_t c = 0; c < 9; ++c)
     if (c != middle) {
       EXPECT_EQ(tissue.cells[c].sides(), 6u);
-      for (const auto& wall : tissue.cells[c].walls) stops += static_cast<int>(wall.size()) - 2;
+      stops += static_cast<int>(tissue.sheet.cells[c].ring.size()) - 6;
     }
   EXPECT_EQ(stops, 2);
   const std::vector<double> areas = apical_areas(tissue, tissue.rest_positions);
@@ -321,7 +323,7 @@ TEST(PolygonDivision, RestShapesOfDaughtersAreTheHalvesOfTheirMother) {
     const CellCut cut{CellId(cell), 1, 1 + sides / 2};
     const auto [low, high] = halves_of_prism(cut, tissue.cells[cell].rest_shape);
     EXPECT_EQ(low.size() + high.size(), tissue.cells[cell].rest_shape.size() + 8);
-    const Division division = divide(tissue, std::vector<CellCut>{cut}, 0);
+    const TissueChange division = divide(tissue, std::vector<CellCut>{cut}, 0);
     const auto [a, b] = division.daughters[0];
     EXPECT_EQ(tissue.cells[a.index()].rest_shape, low);
     EXPECT_EQ(tissue.cells[b.index()].rest_shape, high);
@@ -354,11 +356,42 @@ TEST(PolygonDivision, CutsAcrossTheLongestAxisIntoHalves) {
   }
 }
 
-TEST(PolygonDivision, IsRefusedOfKitesAndLayers) {
-  const PrismSheet sheet = honeycomb(3, 3, 8, 20);
-  EXPECT_FALSE(why_indivisible(tissue_from_prisms(sheet, PolygonSplit::diagonals, 1)));
-  EXPECT_TRUE(why_indivisible(tissue_from_prisms(sheet, PolygonSplit::kites, 1)));
-  EXPECT_TRUE(why_indivisible(tissue_from_prisms(sheet, PolygonSplit::diagonals, 2)));
+TEST(PolygonDivision, FitsThroughThreeGenerationsOfKitesAndLayers) {
+  for (const auto& [split, layers] :
+       {std::pair(PolygonSplit::kites, 1), {PolygonSplit::diagonals, 2}, {PolygonSplit::kites, 3}}) {
+    check("sheet", divide_three_times(bent_sheet(1, split, layers), 0.1, 1));
+    check("egg", divide_three_times(egg(split, layers), 0.1, 2));
+  }
+}
+
+// It is cut along its lines, through its middle: elements stay as they are.
+TEST(PolygonDivision, OfAHexagonOfKitesKeepsItsElements) {
+  Tissue tissue = tissue_from_prisms(honeycomb(3, 3, 8, 20), PolygonSplit::kites, 2);
+  const Tissue before = tissue;
+  const TissueChange change = divide(tissue, std::vector<CellCut>{{CellId(4), 0, 3}}, 0);
+  EXPECT_TRUE(change.new_nodes.empty());
+  EXPECT_EQ(tissue.rest_positions, before.rest_positions);
+  const auto elements_of = [](const Tissue& one) {
+    std::multiset<std::set<NodeId>> elements;
+    for (const auto& nodes : one.elements) elements.emplace(nodes.begin(), nodes.end());
+    return elements;
+  };
+  EXPECT_EQ(elements_of(tissue), elements_of(before));
+  for (const CellId daughter : change.daughters[0]) EXPECT_EQ(tissue.cells[daughter.index()].sides(), 6u);
+  EXPECT_EQ(change.wall_origin.size(), before.sheet.walls.size() + 2);
+  EXPECT_EQ(std::ranges::count(change.wall_origin, WallId()), 2);
+  const double whole = cell_volume(before, before.cells[4], before.rest_positions);
+  for (const CellId daughter : change.daughters[0])
+    EXPECT_NEAR(cell_volume(tissue, tissue.cells[daughter.index()], tissue.rest_positions), whole / 2, 1e-9);
+}
+
+TEST(PolygonDivision, AddsVerticesOfAllLevels) {
+  Tissue tissue = tissue_from_prisms(honeycomb(3, 3, 8, 20), PolygonSplit::diagonals, 3);
+  const std::size_t nodes = tissue.free_node_count();
+  divide(tissue, std::vector<CellCut>{{CellId(4), 0, 3}}, 0);
+  EXPECT_EQ(tissue.free_node_count(), nodes + 2 * 4);
+  EXPECT_NEAR(volume_of_cells(tissue, tissue.rest_positions), volume_inside_boundary(tissue, tissue.rest_positions),
+              1e-9);
 }
 
 }  // namespace

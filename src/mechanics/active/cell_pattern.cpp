@@ -215,18 +215,9 @@ std::vector<double> CellPattern::with_ablations(std::vector<double> times_s) con
 CellPattern::CellPattern(const CellSet& who)
     : cells(who), strengths(who.begin(), who.end()), delays_s(who.size(), 0.0) {}
 
-CellPattern CellPattern::after_division(const Division& division) const {
-  CellPattern after;
-  if (cells.empty()) return after;
-  after.cells = inherited(division, cells);
-  after.strengths = inherited(division, strengths);
-  after.delays_s = inherited(division, delays_s);
-  after.ablations = ablations;
-  for (Ablation& ablation : after.ablations) ablation.cells = inherited(division, ablation.cells);
-  after.pulse_amplitude = pulse_amplitude;
-  if (pulse_periods_s.empty()) return after;
-  after.pulse_periods_s = inherited(division, pulse_periods_s);
-  after.pulse_phases = inherited(division, pulse_phases);
+CellPattern CellPattern::after_division(const TissueChange& change) const {
+  CellPattern after = *this;
+  follow(change, after);
   return after;
 }
 

@@ -5,12 +5,13 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "core/vector.hpp"
 #include "mechanics/active/program.hpp"
-#include "tissue/division.hpp"
 #include "tissue/tissue.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 
@@ -84,16 +85,18 @@ struct Ablation {
 
   /// Ablation that leaves `part` of the strength after `at_s`, until `until_s` if given.
   Ablation(CellSet who, double part, double at_s, std::optional<double> until_s);
+
+  static auto parts_by_cell(auto& ablation) { return std::tie(ablation.cells); }
 };
 
 /// Per-cell parameters of an active law.
 struct CellPattern {
-  CellSet cells;                  // active cells; empty: none
-  std::vector<double> strengths;  // cells; factor, 0 for inactive cells
-  std::vector<double> delays_s;   // cells
+  CellSet cells;        // active cells; empty: none
+  CellArray strengths;  // factor, 0 for inactive cells
+  CellArray delays_s;
   double pulse_amplitude = 0;
-  std::vector<double> pulse_periods_s, pulse_phases;  // cells, phases in periods; empty: no pulses
-  std::vector<Ablation> ablations;                    // a later one acts on what an earlier one has left
+  CellArray pulse_periods_s, pulse_phases;  // phases in periods; empty: no pulses
+  std::vector<Ablation> ablations;          // a later one acts on what an earlier one has left
 
   CellPattern() = default;
   /// Make a pattern with equal strength and no delay.
@@ -108,7 +111,12 @@ struct CellPattern {
   [[nodiscard]] std::vector<double> with_ablations(std::vector<double> times_s) const;
 
   /// Return the pattern after a division; daughters inherit from the mother cell.
-  [[nodiscard]] CellPattern after_division(const Division& division) const;
+  [[nodiscard]] CellPattern after_division(const TissueChange& change) const;
+
+  static auto parts_by_cell(auto& pattern) {
+    return std::tie(pattern.cells, pattern.strengths, pattern.delays_s, pattern.pulse_periods_s, pattern.pulse_phases,
+                    pattern.ablations);
+  }
 };
 
 /// Make the pattern of `cells` on `tissue` in the reference state; strength and delay of other cells are 0. The middle
@@ -142,8 +150,8 @@ class GivenActivities {
 
   [[nodiscard]] std::span<const double> internal() const { return given_; }
   /// Return activities after a division; daughters inherit from the mother cell.
-  [[nodiscard]] std::vector<double> after_division(const Division& division) const {
-    return given_.empty() ? std::vector<double>() : inherited(division, std::vector(given_.begin(), given_.end()));
+  [[nodiscard]] std::vector<double> after_division(const TissueChange& change) const {
+    return given_.empty() ? std::vector<double>() : inherited(change, std::vector(given_.begin(), given_.end()));
   }
 
   /// Return the internal state of which these are the end, with other activities or without any.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "tissue/division.hpp"
 #include "tissue/polygon_cell.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 namespace {
@@ -250,17 +250,19 @@ void Contraction::add_tangent(const Step& step, TangentSink& tangent) const {
 
 namespace {
 
-bool is_corner(const Tissue& tissue, CellId cell, NodeId node) {
-  const auto& corners = tissue.cells[cell.index()].corners;
-  return std::ranges::find(corners, node) != corners.end();
+bool has_node(const Tissue& tissue, CellId id, NodeId node) {
+  const Cell& cell = tissue.cells[id.index()];
+  const auto elements = std::span(tissue.elements).subspan(cell.first_element.index(), cell.element_count);
+  return std::ranges::any_of(elements,
+                             [&](const auto& nodes) { return std::ranges::find(nodes, node) != nodes.end(); });
 }
 
 // Chain with the nodes inserted by cuts of its own cell and of neighbours.
-std::vector<NodeId> with_midway_nodes(const std::vector<NodeId>& chain, const Division& division) {
+std::vector<NodeId> with_midway_nodes(const std::vector<NodeId>& chain, const TissueChange& change) {
   std::vector<NodeId> nodes = {chain.front()};
   for (std::size_t i = 1; i < chain.size(); ++i) {
-    const auto midway = division.node_midway.find(std::minmax(chain[i - 1], chain[i]));
-    if (midway != division.node_midway.end()) nodes.push_back(midway->second);
+    const auto midway = change.node_midway.find(std::minmax(chain[i - 1], chain[i]));
+    if (midway != change.node_midway.end()) nodes.push_back(midway->second);
     nodes.push_back(chain[i]);
   }
   return nodes;
@@ -270,7 +272,7 @@ std::vector<NodeId> with_midway_nodes(const std::vector<NodeId>& chain, const Di
 std::vector<Spring> inherit(const Spring& spring, CellId low, CellId high, const Tissue& tissue,
                             std::span<const Vec3> positions) {
   const auto& nodes = spring.nodes;
-  const auto both = [&](NodeId node) { return is_corner(tissue, low, node) && is_corner(tissue, high, node); };
+  const auto both = [&](NodeId node) { return has_node(tissue, low, node) && has_node(tissue, high, node); };
   const auto cut = std::find_if(nodes.begin() + 1, nodes.end() - 1, both);
   std::vector<Spring> parts = {spring};
   if (cut != nodes.end() - 1) {
@@ -283,7 +285,7 @@ std::vector<Spring> inherit(const Spring& spring, CellId low, CellId high, const
     part.stiffness /= share;
     part.damping /= share;
     part.rest_length *= share;
-    const bool is_low = is_corner(tissue, low, part.nodes.front()) && is_corner(tissue, low, part.nodes.back());
+    const bool is_low = has_node(tissue, low, part.nodes.front()) && has_node(tissue, low, part.nodes.back());
     part.cell = is_low ? low : high;
   }
   return parts;
@@ -291,16 +293,16 @@ std::vector<Spring> inherit(const Spring& spring, CellId low, CellId high, const
 
 }  // namespace
 
-std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const Division& division,
+std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const TissueChange& change,
                                                  std::span<const Vec3> positions) const {
   std::map<CellId, CellId> now, other_daughter;
-  for (std::size_t c = 0; c < division.origin.size(); ++c) now.try_emplace(division.origin[c], CellId(c));
-  for (const auto& [low, high] : division.daughters) other_daughter[low] = high;
+  for (std::size_t c = 0; c < change.origin.size(); ++c) now.try_emplace(change.origin[c], CellId(c));
+  for (const auto& [low, high] : change.daughters) other_daughter[low] = high;
   std::vector<Spring> springs;
   for (Spring spring : springs_) {
     if (!now.contains(spring.cell)) continue;  // the cell is no part of the tissue any more
     spring.cell = now.at(spring.cell);
-    spring.nodes = with_midway_nodes(spring.nodes, division);
+    spring.nodes = with_midway_nodes(spring.nodes, change);
     const auto daughter = other_daughter.find(spring.cell);
     if (daughter == other_daughter.end()) {
       springs.push_back(std::move(spring));
@@ -309,10 +311,10 @@ std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const Div
     for (Spring& part : inherit(spring, daughter->first, daughter->second, tissue, positions))
       springs.push_back(std::move(part));
   }
-  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_division(division));
+  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_division(change));
 }
 
-std::unique_ptr<Law> Contraction::restored(const Tissue& tissue, const Division& change, std::span<const Vec3>,
+std::unique_ptr<Law> Contraction::restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
                                            std::span<const double> past) const {
   std::vector<Spring> springs;
   take_numbers({past.begin(), past.end()}, springs);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "tissue/division.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 namespace {
@@ -274,7 +274,7 @@ std::vector<double> Cortex::next_internal(const Step& step) const {
 // Origin of a face: the earlier face with the same nodes, else all between the same cells; none between daughters.
 class Cortex::Origins {
  public:
-  Origins(const Cortex& before, const Division& division) : before_(before), division_(division) {
+  Origins(const Cortex& before, const TissueChange& change) : before_(before), change_(change) {
     for (std::size_t f = 0; f < before.faces_.size(); ++f) {
       const Face& face = before.faces_[f];
       by_nodes_[sorted(face.nodes)] = f;
@@ -285,9 +285,9 @@ class Cortex::Origins {
   [[nodiscard]] std::vector<std::size_t> of(const Face& face) const {
     // Hanging nodes are numbered again when cells divide.
     const std::array<NodeId, 4> nodes = sorted(face.nodes);
-    const bool are_known = division_.daughters.empty() || nodes.back().index() < division_.free_nodes_before;
+    const bool are_known = change_.daughters.empty() || nodes.back().index() < change_.kept_nodes();
     if (const auto same = by_nodes_.find(nodes); are_known && same != by_nodes_.end()) return {same->second};
-    const auto origin = [&](CellId cell) { return division_.origin[cell.index()]; };
+    const auto origin = [&](CellId cell) { return change_.origin[cell.index()]; };
     const auto found =
         by_cells_.find(cells_of(origin(face.cell), face.beyond ? std::optional(origin(*face.beyond)) : std::nullopt));
     return found == by_cells_.end() ? std::vector<std::size_t>() : found->second;
@@ -307,7 +307,7 @@ class Cortex::Origins {
   }
 
   const Cortex& before_;
-  const Division& division_;
+  const TissueChange& change_;
   std::map<std::array<NodeId, 4>, std::size_t> by_nodes_;
   std::map<std::pair<int, int>, std::vector<std::size_t>> by_cells_;
 };
@@ -332,14 +332,14 @@ void Cortex::take_stretches(std::vector<double> stretches) {
   take_rest_areas();
 }
 
-std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const Division& division,
+std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const TissueChange& change,
                                             std::span<const Vec3> positions) const {
-  auto after = std::make_unique<Cortex>(tissue, pattern_.after_division(division), rule_, kernels_);
-  after->inherit_faces(Origins(*this, division), *this, positions);
+  auto after = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_, kernels_);
+  after->inherit_faces(Origins(*this, change), *this, positions);
   return after;
 }
 
-std::unique_ptr<Law> Cortex::restored(const Tissue& tissue, const Division& change, std::span<const Vec3>,
+std::unique_ptr<Law> Cortex::restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
                                       std::span<const double> past) const {
   auto law = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_, kernels_);
   if (past.size() != law->faces_.size()) throw InvalidNumbers();
@@ -348,12 +348,12 @@ std::unique_ptr<Law> Cortex::restored(const Tissue& tissue, const Division& chan
 }
 
 std::vector<double> Cortex::internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                    const Division& division) const {
+                                                    const TissueChange& change, const ChangePositions&) const {
   const Memory before = memory(internal);
   std::vector<double> after;
   if (flows()) {
-    const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(division));
-    const Origins origins(*this, division);
+    const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(change));
+    const Origins origins(*this, change);
     for (const std::span<const double> areas : {before.areas, before.areas_before})
       for (const Face& face : faces) {
         const std::vector<std::size_t> from = origins.of(face);
@@ -362,8 +362,8 @@ std::vector<double> Cortex::internal_after_division(std::span<const double> inte
   }
   if (activation_.is_used())
     after =
-        joined(std::move(after), inherited(division, std::vector(before.activation.begin(), before.activation.end())));
-  return joined(std::move(after), before.given.after_division(division));
+        joined(std::move(after), inherited(change, std::vector(before.activation.begin(), before.activation.end())));
+  return joined(std::move(after), before.given.after_division(change));
 }
 
 std::vector<double> Cortex::program_points_s() const {

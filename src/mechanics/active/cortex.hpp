@@ -48,14 +48,15 @@ class Cortex final : public BatchLaw<Cortex, 4> {
 
   /// Faces keep their reference area, per area in the undeformed tissue, and their strain (stress-free / reference
   /// area), also as parts of a face that was cut. The reference area of a face between daughters is its present one.
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
   /// Reference areas of faces born in divisions depend on positions then.
   [[nodiscard]] std::vector<double> past() const override { return stretches_; }
-  [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const Division& change, std::span<const Vec3>,
+  [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
                                               std::span<const double> past) const override;
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                            const Division& division) const override;
+                                                            const TissueChange& change,
+                                                            const ChangePositions&) const override;
 
   [[nodiscard]] std::vector<double> program_points_s() const override;
   [[nodiscard]] std::vector<double> program_jumps_s() const override;

@@ -1,7 +1,7 @@
 #include "mechanics/constraints/cell_volume.hpp"
 
 #include "core/parallel.hpp"
-#include "tissue/division.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 namespace {
@@ -97,17 +97,17 @@ double CellVolumes::rounding(const Tissue& tissue, double position_rounding) con
   return thinnest * position_rounding;
 }
 
-CellVolumes CellVolumes::divided(const Tissue& tissue, const Division& division) const {
+CellVolumes CellVolumes::divided(const Tissue& tissue, const TissueChange& change) const {
   CellVolumes after(tissue);
-  after.targets_ = inherited(division, targets_);  // unchanged by other elements of cells beside a cut
+  after.targets_ = inherited(change, targets_);  // unchanged by other elements of cells beside a cut
   after.take_targets(tissue);
   after.is_held_ = is_held_;
   return after;
 }
 
 std::vector<double> CellVolumes::multipliers_after_division(std::span<const double> pressures,
-                                                            const Division& division) const {
-  return inherited(division, std::vector<double>(pressures.begin(), pressures.end()));
+                                                            const TissueChange& change) const {
+  return inherited(change, std::vector<double>(pressures.begin(), pressures.end()));
 }
 
 void CellVolumes::gradients(std::span<const Vec3> positions, std::span<Vec3> of_elements) const {
@@ -193,10 +193,9 @@ void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
       tangent.accepts_concurrent_blocks());
 }
 
-std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Division& division,
+std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const TissueChange& change,
                                                 std::span<const Vec3>) const {
-  return std::make_unique<Dilatation>(tissue, bulk_moduli_.after_division(tissue, division), cells_are_exact_,
-                                      kernels_);
+  return std::make_unique<Dilatation>(tissue, bulk_moduli_.after_division(tissue, change), cells_are_exact_, kernels_);
 }
 
 std::unique_ptr<Law> Dilatation::grown(const Tissue& tissue, std::span<const ElementId> elements) const {

@@ -55,13 +55,13 @@ class CellVolumes final : public Constraint {
   /// Return the constraints of the tissue after growth.
   [[nodiscard]] CellVolumes grown(const Tissue& tissue) const;
   /// Return the constraints after a division; daughters inherit pressures.
-  [[nodiscard]] CellVolumes divided(const Tissue& tissue, const Division& division) const;
-  [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const Division& division,
+  [[nodiscard]] CellVolumes divided(const Tissue& tissue, const TissueChange& change) const;
+  [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const TissueChange& change,
                                                            std::span<const Vec3> /*positions*/) const override {
-    return std::make_unique<CellVolumes>(divided(tissue, division));
+    return std::make_unique<CellVolumes>(divided(tissue, change));
   }
   [[nodiscard]] std::vector<double> multipliers_after_division(std::span<const double> pressures,
-                                                               const Division& division) const override;
+                                                               const TissueChange& change) const override;
 
   [[nodiscard]] VolumeArrays kernel_arrays(std::span<const Vec3> positions, std::span<const double> pressures) const;
 
@@ -92,7 +92,7 @@ class Dilatation final : public BatchLaw<Dilatation, 8> {
   [[nodiscard]] std::string_view name() const override { return "dilatation"; }
   [[nodiscard]] double energy(const Step& step) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
   [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 

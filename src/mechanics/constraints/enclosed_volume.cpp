@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tissue/division.hpp"
 #include "tissue/faces.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 namespace {
@@ -147,7 +147,7 @@ double EnclosedVolume::rounding(const Tissue& /*tissue*/, double position_roundi
   return std::sqrt(gradient_scale_) * position_rounding / target_;
 }
 
-std::unique_ptr<Constraint> EnclosedVolume::after_division(const Tissue& tissue, const Division& /*division*/,
+std::unique_ptr<Constraint> EnclosedVolume::after_division(const Tissue& tissue, const TissueChange& /*change*/,
                                                            std::span<const Vec3> /*positions*/) const {
   return std::make_unique<EnclosedVolume>(tissue, target_);
 }

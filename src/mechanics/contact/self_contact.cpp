@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "mechanics/contact/nonconforming_edges.hpp"
 #include "mechanics/coulomb.hpp"
 
 namespace plica {
@@ -38,79 +39,8 @@ std::vector<Triangle> triangles_of(const std::vector<std::array<NodeId, 4>>& fac
   return triangles;
 }
 
-using Edge = std::pair<NodeId, NodeId>;  // as its facet has it
-
-// Facets that meet at hanging nodes: their edges differ, but are parts of one line between free nodes.
-class NonconformingEdges {
- public:
-  NonconformingEdges(const Tissue& tissue, const std::map<Edge, std::size_t>& edges) {
-    for (const auto& [edge, facet] : edges)
-      if (!edges.contains({edge.second, edge.first}))
-        if (const std::optional<Part> part = part_of(tissue, edge, facet)) lines_[part->line].push_back(*part);
-    for (const auto& [line, parts] : lines_)
-      for (const Part& part : parts)
-        for (const Part& other : parts) {
-          if (part.is_forward() == other.is_forward()) continue;
-          inner_.insert(part.edge);
-          add_end(part, other.edge.first, other.from);
-          add_end(part, other.edge.second, other.to);
-        }
-  }
-  /// Whether a facet lies beyond an edge that no other facet has in opposite direction.
-  [[nodiscard]] bool is_inner(const Edge& edge) const { return inner_.contains(edge); }
-  /// Facets on whose edges a node lies without being one of their nodes.
-  [[nodiscard]] std::set<std::size_t> across(NodeId node) const {
-    const auto found = across_.find(node);
-    return found == across_.end() ? std::set<std::size_t>() : found->second;
-  }
-  /// Nodes of other facets that lie on an edge, by edge with the smaller node first.
-  [[nodiscard]] const std::map<Edge, std::set<NodeId>>& lying() const { return lying_; }
-  [[nodiscard]] std::set<NodeId> lying_on(const Edge& edge) const {
-    const auto found = lying_.find(std::minmax(edge.first, edge.second));
-    return found == lying_.end() ? std::set<NodeId>() : found->second;
-  }
-
- private:
-  struct Part {
-    Edge line;        // its ends, the smaller one first
-    double from, to;  // parts of the way along it
-    Edge edge;
-    std::size_t facet;
-    [[nodiscard]] bool is_forward() const { return from < to; }
-    [[nodiscard]] bool holds(double place) const {
-      constexpr double rounding = 1e-9;
-      return place > std::min(from, to) + rounding && place < std::max(from, to) - rounding;
-    }
-  };
-  void add_end(const Part& part, NodeId node, double place) {
-    if (!part.holds(place)) return;
-    across_[node].insert(part.facet);
-    lying_[std::minmax(part.edge.first, part.edge.second)].insert(node);
-  }
-  static std::optional<Part> part_of(const Tissue& tissue, const Edge& edge, std::size_t facet) {
-    std::map<NodeId, std::array<double, 2>> weights;  // of free nodes in both ends
-    tissue.for_free_nodes(edge.first, [&](NodeId node, double weight) { weights[node][0] += weight; });
-    tissue.for_free_nodes(edge.second, [&](NodeId node, double weight) { weights[node][1] += weight; });
-    if (weights.size() != 2) return std::nullopt;
-    const auto& [end, of_end] = *weights.rbegin();
-    return Part{{weights.begin()->first, end}, of_end[0], of_end[1], edge, facet};
-  }
-
-  std::map<Edge, std::vector<Part>> lines_;
-  std::set<Edge> inner_;
-  std::map<NodeId, std::set<std::size_t>> across_;
-  std::map<Edge, std::set<NodeId>> lying_;
-};
-
 bool have_common_node(std::span<const KeptNode> some, std::span<const NodeId> others) {
   return std::ranges::any_of(some, [&](NodeId node) { return std::ranges::find(others, node) != others.end(); });
-}
-
-// Pair whose q is now nearest to a place; null without pairs.
-const Pair* nearest_of(std::span<const Pair> pairs, const Vec3& place, std::span<const Vec3> x) {
-  const auto away = [&](const Pair& pair) { return (pair.q.at(x) - place).squaredNorm(); };
-  const auto nearest = std::ranges::min_element(pairs, {}, away);
-  return nearest == pairs.end() ? nullptr : &*nearest;
 }
 
 }  // namespace
@@ -216,7 +146,13 @@ bool SelfContact::is_nearest_about(const SurfacePlace& q, const Vec3& place, con
   return true;
 }
 
-std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> known, const Surface& surface,
+std::vector<SelfContact::Touch> SelfContact::touches_of(std::span<const Pair> pairs, std::span<const Vec3> x) {
+  std::vector<Touch> touches;
+  for (const Pair& pair : pairs) touches.push_back({pair.q.at(x), pair.gap(x), pair.distance});
+  return touches;
+}
+
+std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Touch> known, const Surface& surface,
                                          const Pair* first) const {
   const auto& [x, normals, outward, triangles, grid] = surface;
   const SurfacePlace& point = points_[p].place;
@@ -251,12 +187,15 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> kn
       if (found.normal.dot(facing) > rounded) continue;
       if ((first || outside.dot(facing) >= 0) && !is_nearest_about(q, place, surface)) continue;
       // Admissible penetration: after contact, one distance more than its last pair, which lags.
-      const Pair* last = nearest_of(known, q.at(x), x);
-      const double last_gap = last ? last->gap(x) : std::numeric_limits<double>::infinity();
+      const Vec3 at_q = q.at(x);
+      const auto last =
+          std::ranges::min_element(known, {}, [&](const Touch& touch) { return (touch.place - at_q).squaredNorm(); });
+      const bool is_known = last != known.end();
+      const double last_gap = is_known ? last->gap : std::numeric_limits<double>::infinity();
       found.first_gap = found.gap(x);
       if (found.first_gap < (last_gap < rule_.distance ? std::min(0.0, last_gap) - rule_.distance : 0)) continue;
       // A pair detected below the contact distance starts without force, so nothing jumps apart.
-      const double seen_at = last ? last->distance : -std::numeric_limits<double>::infinity();
+      const double seen_at = is_known ? last->distance : -std::numeric_limits<double>::infinity();
       found.distance = std::min(rule_.distance, std::max(seen_at, found.first_gap));
       nearest2 = distance2;
       best = found;
@@ -266,17 +205,25 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Pair> kn
 }
 
 std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<const double> known) const {
-  const Vectors of_whole = mirror_.is_used() ? mirror_.full_vectors(positions) : Vectors();
-  const Surface surface(*this, mirror_.is_used() ? std::span<const Vec3>(of_whole) : positions);
   const std::span<const Pair> before = pairs_of(known);
   auto last = before.begin();  // that of the point or of one after it; then those of edges
-  std::vector<Pair> pairs;
-  for (std::size_t p = 0; p < points_.size(); ++p) {
+  return pairs(positions, before, [&](std::size_t p, std::span<const Vec3> x) {
     const auto is_known = [&] { return last != before.end() && !last->is_of_edges(); };
     while (is_known() && last->first < p) ++last;
     const auto first_known = last;
     while (is_known() && last->first == p) ++last;
-    const std::span<const Pair> known_of_p(first_known, last);
+    return touches_of({first_known, last}, x);
+  });
+}
+
+template <class KnownOf>
+std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<const Pair> before,
+                                     const KnownOf& known_of) const {
+  const Vectors of_whole = mirror_.is_used() ? mirror_.full_vectors(positions) : Vectors();
+  const Surface surface(*this, mirror_.is_used() ? std::span<const Vec3>(of_whole) : positions);
+  std::vector<Pair> pairs;
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    const std::vector<Touch> known_of_p = known_of(p, surface.x);
     const std::optional<Pair> first = pair_of(p, known_of_p, surface, nullptr);
     if (!first) continue;
     const auto add = [&](const Pair& pair) {
@@ -455,8 +402,32 @@ void SelfContact::add_group(std::span<const KeptNode> of_whole, NodeGroups& grou
   groups.add(nodes);
 }
 
-std::unique_ptr<Law> SelfContact::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
+std::unique_ptr<Law> SelfContact::after_division(const Tissue& tissue, const TissueChange&,
+                                                 std::span<const Vec3>) const {
   return std::make_unique<SelfContact>(tissue, rule_);
+}
+
+std::vector<double> SelfContact::internal_after_division(std::span<const double> internal, const Tissue& tissue,
+                                                         const TissueChange&, const ChangePositions& positions) const {
+  if (positions.after.empty()) return {};  // of a part: contact belongs to none
+  const SelfContact after(tissue, rule_);
+  const std::span<const Pair> before = pairs_of(internal);
+  const auto pairs = after.pairs(positions.after, {}, [&](std::size_t p, std::span<const Vec3> x) {
+    const Vec3 place = after.points_[p].place.at(x);
+    // Of the nearest point that had pairs, if it is as near as points of the surface are to each other.
+    double nearest = std::numeric_limits<double>::infinity();
+    std::vector<Pair> known;
+    for (const Pair& pair : before) {
+      if (pair.is_of_edges()) break;
+      const double away = (pair.p.at(positions.before) - place).squaredNorm();
+      if (away > std::min(nearest, 4 * pair.area)) continue;
+      if (away < nearest) known.clear();
+      nearest = away;
+      known.push_back(pair);
+    }
+    return touches_of(known, positions.before);
+  });
+  return after.packed(pairs, {});
 }
 
 }  // namespace plica

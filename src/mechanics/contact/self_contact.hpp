@@ -62,14 +62,13 @@ class SelfContact final : public Law {
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override {
     return packed(pairs(step.positions, step.internal), step.internal);
   }
-  /// Return a law without pairs until the next accepted step; also for a part of the tissue, since contact belongs to
-  /// no part.
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
-  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double>, const Tissue&,
-                                                            const Division&) const override {
-    return {};  // no pairs
-  }
+  /// Return pairs found again. A point may be as far beyond the surface as the nearest point that touched before. For a
+  /// part of the tissue there are none, since contact belongs to no part.
+  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
+                                                            const TissueChange& change,
+                                                            const ChangePositions& positions) const override;
 
   using Pair = ContactPair;
   /// Contact point: a node, an edge midpoint or a facet mean.
@@ -95,9 +94,19 @@ class SelfContact final : public Law {
   [[nodiscard]] double margin() const { return 0.25 * rule_.search; }
   /// Return a grid whose facets near a place are at least those within the search of it.
   [[nodiscard]] const BoxGrid& grid_of(std::span<const Vec3> positions) const;
+  /// Pair of the previous step, as it is now.
+  struct Touch {
+    Vec3 place;  // q
+    double gap, distance;
+  };
+  [[nodiscard]] static std::vector<Touch> touches_of(std::span<const Pair> pairs, std::span<const Vec3> x);
+  /// Find pairs, given those of edges in the previous step, and known_of(point, positions) for touches of points.
+  template <class KnownOf>
+  [[nodiscard]] std::vector<Pair> pairs(std::span<const Vec3> positions, std::span<const Pair> before,
+                                        const KnownOf& known_of) const;
   /// Find the pair of a point with the nearest facing triangle; after a `first` pair, with the nearest one of another
-  /// part of the surface. `known`: pairs of the point in the previous step.
-  [[nodiscard]] std::optional<Pair> pair_of(std::size_t point, std::span<const Pair> known, const Surface& surface,
+  /// part of the surface. `known`: those of the point in the previous step.
+  [[nodiscard]] std::optional<Pair> pair_of(std::size_t point, std::span<const Touch> known, const Surface& surface,
                                             const Pair* first) const;
   [[nodiscard]] bool is_nearest_about(const SurfacePlace& q, const Vec3& place, const Surface& surface) const;
   [[nodiscard]] double reach_of_second() const { return 4 * rule_.distance; }

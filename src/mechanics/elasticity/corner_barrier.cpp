@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "tissue/division.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 namespace {
@@ -145,7 +145,8 @@ NodeGroups CornerBarrier::node_groups(std::span<const double> /*internal*/) cons
   return groups;
 }
 
-std::unique_ptr<Law> CornerBarrier::after_division(const Tissue& tissue, const Division&, std::span<const Vec3>) const {
+std::unique_ptr<Law> CornerBarrier::after_division(const Tissue& tissue, const TissueChange&,
+                                                   std::span<const Vec3>) const {
   return std::make_unique<CornerBarrier>(tissue, modulus_, threshold_);
 }
 

@@ -5,7 +5,7 @@
 #include "core/parallel.hpp"
 #include "mechanics/elasticity/turning_elements.hpp"
 #include "mechanics/energy.hpp"
-#include "tissue/division.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 namespace {
@@ -96,9 +96,9 @@ double Corotational::energy(const Step& step) const {
   return chunks_.sum_over_elements([&](std::size_t e) { return energies[e]; });
 }
 
-std::unique_ptr<Law> Corotational::after_division(const Tissue& tissue, const Division& division,
+std::unique_ptr<Law> Corotational::after_division(const Tissue& tissue, const TissueChange& change,
                                                   std::span<const Vec3>) const {
-  return std::make_unique<Corotational>(tissue, moduli_.after_division(tissue, division), shear_viscosity_, kernels_);
+  return std::make_unique<Corotational>(tissue, moduli_.after_division(tissue, change), shear_viscosity_, kernels_);
 }
 
 }  // namespace plica

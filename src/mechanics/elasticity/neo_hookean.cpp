@@ -8,7 +8,7 @@
 
 #include "core/parallel.hpp"
 #include "mechanics/elasticity/turning_elements.hpp"
-#include "tissue/division.hpp"
+#include "tissue/tissue_change.hpp"
 
 namespace plica {
 namespace {
@@ -172,13 +172,13 @@ std::vector<double> NeoHookean::next_internal(const Step& step) const {
   return internal;
 }
 
-std::unique_ptr<Law> NeoHookean::after_division(const Tissue& tissue, const Division& division,
+std::unique_ptr<Law> NeoHookean::after_division(const Tissue& tissue, const TissueChange& change,
                                                 std::span<const Vec3>) const {
-  return std::make_unique<NeoHookean>(tissue, materials_.after_division(tissue, division), kernels_);
+  return std::make_unique<NeoHookean>(tissue, materials_.after_division(tissue, change), kernels_);
 }
 
 std::vector<double> NeoHookean::internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                        const Division& division) const {
+                                                        const TissueChange& change, const ChangePositions&) const {
   if (!flows_) return {};
   std::vector<std::vector<std::size_t>> of_cell(std::ranges::max(element_cell_).index() + 1);  // elements before
   for (std::size_t e = 0; e < elements_.size(); ++e) of_cell[element_cell_[e].index()].push_back(e);
@@ -198,7 +198,7 @@ std::vector<double> NeoHookean::internal_after_division(std::span<const double> 
       const Vec3 x = where(tissue.element_rest_shape[e], g);
       double least = std::numeric_limits<double>::infinity();
       std::pair<std::size_t, int> nearest;
-      for (const std::size_t old : of_cell[division.origin[tissue.element_cell[e].index()].index()])
+      for (const std::size_t old : of_cell[change.origin[tissue.element_cell[e].index()].index()])
         for (int h = 0; h < 8; ++h)
           if (const double distance = (where(rest_[old], h) - x).squaredNorm(); distance < least) {
             least = distance;

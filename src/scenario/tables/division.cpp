@@ -31,10 +31,8 @@ void check_divisions(Scenario& scenario, Input& input) {
 std::string how_to_divide(const Scenario& scenario, const Tissue& tissue) {
   const EmbryoInput& embryo = scenario.embryo;
   if (cell_between_layers(tissue)) return "use one layer of cells";
-  if (!is_of_grid(shape_of(embryo)) && shape_of(embryo) != EmbryoShape::file)
-    return "set embryo.elements to \"diagonals\" and embryo.layers to 1";
   if (embryo.elements_per_cell != EmbryoInput().elements_per_cell) return "set embryo.elements_per_cell to [1, 1, 1]";
-  return "use a mesh with one element per cell";
+  return "use a mesh with one element per cell, or with cells of polygons as `plica mesh` writes them";
 }
 
 void check_cells(const Scenario& scenario, const Tissue& tissue, Errors& errors) {
@@ -47,8 +45,10 @@ void check_cells(const Scenario& scenario, const Tissue& tissue, Errors& errors)
 
 ScenarioTable division_table() {
   using V = DivisionInput;
-  ScenarioTable info{"division.*", "Cell division at a time or above a threshold, of cells with one element each.",
-                     "Activity"};
+  ScenarioTable info{
+      "division.*",
+      "Cell division at a time or above a threshold, of polygons, or of grid cells with one element along and across.",
+      "Activity"};
   const auto row = key_rows(info, &Scenario::divisions);
   info.rows = {
       row("region", &V::region, anything, "Cells that divide.", {.required = true}),

@@ -55,8 +55,6 @@ void check_region_elasticity(const std::string& table, R& it, const Scenario& sc
     input.report(table + ".poisson_ratio",
                  fmt::format("{} is below 0, the minimum with model \"neo-hookean\"", *it.poisson_ratio),
                  "set poisson_ratio to a number >= 0, or model to \"corotational\"");
-  if (it.height_percent && !scenario.divisions.empty() && sound(".height_percent"))
-    input.report(table + ".height_percent", "cells with layers cannot divide", "remove height_percent, or [division]");
 }
 
 Vec3 mean(std::span<const NodeId> nodes, const Vectors& positions) {

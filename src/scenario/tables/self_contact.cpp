@@ -16,9 +16,6 @@ void check_contact(Scenario& scenario, Input& input) {
     input.report("self_contact.friction", "is not used with surface \"none\"",
                  "remove friction, or set surface, for example to \"apical\"");
   if (contact.surface == "none") return;
-  if (!scenario.divisions.empty())
-    input.report("self_contact.surface", "self-contact does not support division",
-                 "remove [self_contact] or [division]");
   if (is_as_in_the_paper(scenario))
     input.report("self_contact.surface",
                  "self-contact requires time.scheme \"newton\" and a volume.method other than \"projection\"",

@@ -17,6 +17,7 @@
 #include "core/parallel.hpp"
 #include "tissue/hexahedron.hpp"
 #include "tissue/lattice.hpp"
+#include "tissue/mesher.hpp"
 
 namespace plica {
 namespace {
@@ -325,9 +326,9 @@ Tissue build_shell(const ShellShape& shape) {
     for (std::size_t vertex = 0; vertex < mid.size(); ++vertex)
       positions[w * mid.size() + vertex] = surface.point(surface.project(mid[vertex]), offset);
   }
-  std::vector<CellLattice> lattices = shell_lattices(coarse, fine, shape.elements_per_cell);
-  if (along * across * layers > 1) number_as_elements_come(lattices, positions);
+  const std::vector<CellLattice> lattices = shell_lattices(coarse, fine, shape.elements_per_cell);
   Tissue tissue = tissue_from_lattices(lattices, std::move(positions));
+  if (along * across * layers > 1) number_as_elements_come(tissue);
   tissue.outer_shape = Capsule{half_axis, shape.diameter_um / 2};
   return tissue;
 }

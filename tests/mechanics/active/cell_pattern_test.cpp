@@ -280,7 +280,7 @@ TEST(PatternRule, PulsesSwellAndEbbAboutOne) {
   for (int c = 0; c < 21; ++c) EXPECT_EQ(together.pulse(CellId(c), 20), 1.6);
   EXPECT_EQ(CellPattern(CellSet(21, true)).pulse(CellId(3), 7), 1);
   // Daughters pulse with their mother.
-  Division division;
+  TissueChange division;
   division.origin = {CellId(5), CellId(2), CellId(5)};
   const CellPattern after = found.after_division(division);
   for (int k = 0; k < 3; ++k) EXPECT_EQ(after.pulse(CellId(k), 33), found.pulse(division.origin[k], 33));
@@ -326,7 +326,7 @@ TEST(PatternRule, AblationsTakeStrengthForAWhileOrForGood) {
                                      {100.0, {1, 0, 0}}})
     for (int c = 0; c < 3; ++c) EXPECT_EQ(pattern.remaining(CellId(c), time_s), left[c]) << time_s << " " << c;
   EXPECT_EQ(pattern.with_ablations({70, 5}), (std::vector<double>{5, 60, 70, 80, 90}));
-  Division division;
+  TissueChange division;
   division.origin = {CellId(2), CellId(0), CellId(2)};
   const CellPattern after = pattern.after_division(division);
   for (int k = 0; k < 3; ++k) EXPECT_EQ(after.remaining(CellId(k), 85), pattern.remaining(division.origin[k], 85));

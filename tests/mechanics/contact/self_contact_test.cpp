@@ -6,6 +6,7 @@
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
 #include "support/prisms.hpp"
+#include "tissue/division.hpp"
 
 namespace {
 
@@ -361,6 +362,32 @@ TEST(SelfContact, GapsHaveASign) {
     ++pushed;
   }
   EXPECT_GT(pushed, 0);
+}
+
+// Sides that have been pushed through each other push back as before, though points and facets are others.
+TEST(SelfContact, LivesOnThroughADivision) {
+  Tissue tissue = folded(0.6, 20);
+  const SelfContact law(tissue, {.distance = 0.4, .stiffness = 2, .search = 4});
+  Motion motion = with_pairs(law, tissue);
+  for (Vec3& x : motion.positions) x.x() -= x.x() > 0 ? 0.35 : -0.35;
+  motion.internal = law.next_internal(motion.step());
+  const auto push = [](const Law& one, const Motion& there) {
+    double sum = 0;
+    for (const Vec3& f : forces_of(one, there.step())) sum += std::abs(f.x()) / 2;
+    return sum;
+  };
+  const double before = push(law, motion);
+  EXPECT_GT(before, 0);
+  std::vector<CellCut> cuts;
+  for (int c = 0; c < 60; c += 3) cuts.push_back({CellId(c), c % 2});
+  const TissueChange change = divide(tissue, cuts, 0, motion.positions);
+  const Vectors now = with_new_nodes(tissue, change, motion.positions);
+  Motion after = at_rest(tissue);
+  after.positions = after.previous_positions = now;
+  after.internal = law.internal_after_division(motion.internal, tissue, change, {motion.positions, now});
+  EXPECT_NEAR(push(*law.after_division(tissue, change, now), after) / before, 1, 0.03);
+  after.internal = law.internal_after_division(motion.internal, tissue, change, {});
+  EXPECT_TRUE(SelfContact::pairs_of(after.internal).empty());
 }
 
 }  // namespace

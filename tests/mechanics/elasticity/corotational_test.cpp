@@ -90,7 +90,7 @@ TEST(Corotational, ModuliOfCellsAreInherited) {
   model.laws.push_back(
       std::make_unique<Dilatation>(model.tissue, in_elements(model.tissue, moduli.bulk_modulus(), factors), false));
   State state = rest_state(model);
-  const Division division = divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 1}}});
+  const TissueChange division = divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 1}}});
   const std::vector<double> after = inherited(division, factors);
   ASSERT_EQ(after, (std::vector<double>{1, 0.2, 3, 0.2}));
   const Motion motion = random_motion(model.tissue, 3, 3);

@@ -256,7 +256,7 @@ TEST(NeoHookean, DaughtersHaveTheirMothersFlow) {
   EXPECT_EQ(of_cell[3], Mat3::Identity());
   const Vectors before = forces_of(*model.laws[0], at());
   const double energy = model.laws[0]->energy(at());
-  const Division division = divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 1}}});
+  const TissueChange division = divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 1}}});
   ASSERT_GT(model.tissue.elements.size(), 6u);
   for (std::size_t e = 0; e < model.tissue.elements.size(); ++e)
     for (int g = 0; g < 8; ++g)
