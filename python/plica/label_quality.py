@@ -10,14 +10,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from .errors import needed
 from .prisms import PrismTissue
-from .voxel_sides import FIRST, SECOND
+from .voxel_sides import FIRST, SECOND, Floats
 from .voxel_surfaces import RIM
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .voxel_labels import Labels
-    from .voxel_layer import Floats, Layer
+    from .voxel_layer import Layer
 
 __all__ = ["LabelQuality", "LabelledTissue"]
 
@@ -169,7 +169,8 @@ def _triangles(tissue: PrismTissue) -> Floats:
         top, bottom = tissue.apical[cell], tissue.basal[cell]
         above, below = np.roll(top, -1, axis=0), np.roll(bottom, -1, axis=0)
         found += [(top.mean(axis=0) + 0 * top, top, above), (bottom.mean(axis=0) + 0 * top, bottom, below), (bottom, below, above), (bottom, above, top)]
-    return np.concatenate([np.stack(one, axis=1) for one in found])[:, :, ::-1]
+    triangles: Floats = np.concatenate([np.stack(one, axis=1) for one in found])[:, :, ::-1]
+    return triangles
 
 
 def _cut(triangles: Floats, axis: int, at: float) -> Floats:

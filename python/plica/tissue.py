@@ -189,7 +189,9 @@ class Tissue:
         """Value of ``embryo.shape`` for this tissue."""
         return "file"
 
-    _prisms: Optional[_core.Prisms] = None
+    @property
+    def _prisms(self) -> Optional[_core.Prisms]:
+        return None
 
     @cached_property
     def _mesh(self) -> _core.Mesh:

@@ -131,7 +131,7 @@ def _volumes(labels: Labels, spacing: Floats) -> Floats:
     total = np.zeros(labels.cells + 2, dtype=np.int64)
     for plane in labels.numbers:
         total += np.bincount(plane.ravel(), minlength=labels.cells + 2)
-    return total[:-1] * float(np.prod(spacing))
+    return total[:-1].astype(np.float64) * float(np.prod(spacing))
 
 
 def contact_areas(numbers: NDArray[Any], cells: int, spacing: Floats) -> dict[tuple[int, int], float]:
@@ -165,7 +165,7 @@ def _first_is_apical(layer: Layer, labels: Labels, spacing: Floats, apical: Opti
     if apical in ("outside", "inside"):
         if abs(bend) < FLAT:
             raise ValueError(f"apical: \"{apical}\", but the layer is flat; it faces {_direction(way)} and {_direction(-way)}: give one of these")
-        return (bend > 0) == (apical == "outside")
+        return bool((bend > 0) == (apical == "outside"))
     if apical not in DIRECTIONS:
         raise ValueError(f"apical: {apical!r:.60}; give {SIDES}")
     axis, sign = DIRECTIONS[apical]
@@ -201,7 +201,8 @@ def _cut_cells(labels: Labels) -> Integers:
             plane = np.take(numbers, inner, axis)
             found.append(np.unique(plane[np.take(numbers, margin, axis) == beyond]))
     cut = np.unique(np.concatenate(found)).astype(np.int64)
-    return cut[(cut > 0) & (cut < beyond)]
+    inside: Integers = cut[(cut > 0) & (cut < beyond)]
+    return inside
 
 
 def _cut_text(labels: Labels) -> str:

@@ -144,7 +144,7 @@ def _common_point(corner: Integers, group: Integers, way: Floats, area: Floats, 
     key = corner * groups + group
 
     def sums(values: Floats) -> Floats:
-        return np.bincount(key, weights=area * values, minlength=count * groups)
+        return np.bincount(key, weights=area * values, minlength=count * groups).astype(np.float64, copy=False)
 
     weight = np.bincount(key, weights=area, minlength=count * groups)
     used = np.flatnonzero((np.bincount(key, minlength=count * groups) >= 4) & (weight > 0))
@@ -161,13 +161,13 @@ def _common_point(corner: Integers, group: Integers, way: Floats, area: Floats, 
     at = used // groups
     np.add.at(matrix, at, trust[:, None, None] * normal[:, :, None] * normal[:, None, :])
     np.add.at(right, at, (trust * (normal * mean).sum(axis=1))[:, None] * normal)
-    return np.linalg.solve(matrix, right[:, :, None])[:, :, 0]
+    return np.asarray(np.linalg.solve(matrix, right[:, :, None])[:, :, 0], dtype=np.float64)
 
 
 def extended(places: Floats, middles: Floats, joined: Integers) -> Floats:
     """Return places with those that are NaN from the middle, as far and in the direction as neighbouring columns."""
     ways = places - middles
-    known = np.isfinite(ways).all(axis=1)
+    known: NDArray[np.bool_] = np.logical_and.reduce(np.isfinite(ways), axis=1)
     ways = np.where(known[:, None], ways, 0.0)
     for _ in range(len(places)):
         if known.all():

@@ -49,7 +49,7 @@ def layer_of(numbers: NDArray[Any], sides: Sides, spacing: Floats, volumes: Floa
     middle = np.concatenate([meetings[0].place, [bend.place for bend in bends]]) if bends else meetings[0].place
     places = [_on_side(side, numbers, spacing, sides, meetings, columns, bends, middle, width) for side in (FIRST, SECOND)]
     joined = np.array([pair for ring in rings.values() for pair in zip(ring, ring[1:] + ring[:1])], dtype=np.int64).reshape(-1, 2)
-    fitted = np.isfinite(places[0]).all(axis=1) & np.isfinite(places[1]).all(axis=1)
+    fitted: NDArray[np.bool_] = np.logical_and.reduce(np.isfinite(np.hstack(places)), axis=1)
     middles = face_places(sides.faces, numbers.shape, spacing)
     moved: set[int] = set()
     for number, side in enumerate((FIRST, SECOND)):
@@ -84,11 +84,11 @@ def _rings(meetings: Meetings, cells: int, shape: tuple[int, ...], spacing: Floa
         bent: list[int] = []
         for corner, after in zip(ring, ring[1:] + ring[:1]):
             bent.append(corner)
-            arc = free.pop(frozenset((corner, after)), None)
-            if arc is None:
+            gap = free.pop(frozenset((corner, after)), None)
+            if gap is None:
                 continue
             centre = meetings.place[ring].mean(axis=0)
-            line = outline_between(meetings, arc, corner, after, shape, spacing)
+            line = outline_between(meetings, gap, corner, after, shape, spacing)
             for share in _bends(line, centre, BEND * width):
                 bent.append(len(columns))
                 columns.append(frozenset((RIM, cell)))

@@ -57,7 +57,8 @@ def runs_of(numbers: NDArray[Any]) -> Runs:
 
 def _voxels(runs: Runs, chosen: NDArray[np.bool_]) -> Integers:
     first, length = runs.first[chosen], runs.length[chosen]
-    return np.repeat(first - np.cumsum(length) + length, length) + np.arange(int(length.sum()))
+    voxels: Integers = np.repeat(first - np.cumsum(length) + length, length) + np.arange(int(length.sum()))
+    return voxels
 
 
 def _without_pieces(labels: Labels) -> NDArray[np.int64]:

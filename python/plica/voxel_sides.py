@@ -55,11 +55,11 @@ def sides_of(numbers: NDArray[Any], cells: int, spacing: Floats, pairs: Integers
     """
     faces, sign = free_faces(numbers, cells)
     shape = numbers.shape
-    area = np.prod(spacing) / spacing[faces.axis]
+    area: Floats = np.prod(spacing) / spacing[faces.axis]
     one, other = neighbours_in(edges_of(faces, shape))
     same = faces.cell[one] == faces.cell[other]
     patch = components(one[same], other[same], len(faces.low))
-    normals = _smoothed_normals(faces, sign * area, one, other)
+    normals = _smoothed_normals(faces, area * sign, one, other)
     side, spans = _side_of_patches(faces, normals, patch, one[~same], other[~same], cells)
     side = side[patch]
     axis = _axes(faces, side, area, face_places(faces, shape, spacing), spans, pairs)

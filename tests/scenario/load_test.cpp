@@ -83,7 +83,7 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
        "2: elasticity.poisson_ratio: 0.5 is out of range; set poisson_ratio to a number > -1 and < 0.5"},
       {"[embryo]\nshape = \"pil\"",
        "2: embryo.shape: \"pil\" is unknown; set shape to one of: pill | sphere | slice | block | egg | points | sheet "
-       "| surface | file (nearest match: \"pill\")"},
+       "| surface | prisms | file (nearest match: \"pill\")"},
       {"[elasticity]\nattractor_preload_nN = 1",
        "2: elasticity.attractor_preload_nN: is not used with model \"corotational\"; remove it, or set "
        "elasticity.model to \"shape-memory\""},
