@@ -5,8 +5,7 @@ function(unite_sources target)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  # A local name may be one of a neighbour, and an unnamed namespace is no longer that of the main file.
-  target_compile_options(${target} PRIVATE -Wno-shadow -Wno-subobject-linkage)
+  target_compile_options(${target} PRIVATE -Wno-subobject-linkage)  # an unnamed namespace is no longer that of the main file
   foreach(source ${ARGN})
     cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${PROJECT_SOURCE_DIR} OUTPUT_VARIABLE folder)
     cmake_path(GET folder PARENT_PATH folder)

@@ -23,7 +23,7 @@ __all__ = ["tissue_of_labels"]
 FLAT = 0.04          # difference of the areas of both sides, over their mean; less is no bend
 CLEAR = 1.15         # ratio of a marker on both sides that tells which is apical
 ONE_WAY = 0.3        # mean of normals; less and the layer faces all ways
-LARGE_CELL = 2.0     # times the volume of a usual cell: two cells may have one label
+LARGE_CELL = 1.7     # times the volume of a usual cell: two cells, which have about 2, may have one label
 OPENING = 1.5        # widths of a cell from the middle of an opening as small as missing cells leave
 DIRECTIONS = {f"{sign}{axis}": (place, 1 if sign == "+" else -1) for place, axis in enumerate("zyx") for sign in "+-"}
 SIDES = "\"outside\" or \"inside\" (of the bend), or a direction: \"+z\", \"-z\", \"+y\", \"-y\", \"+x\", \"-x\""

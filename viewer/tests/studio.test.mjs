@@ -155,6 +155,7 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.selectOption("#field", "difference");
 
   // Back in time, and darkness from there on.
+  await page.waitForFunction(() => Number(document.querySelector("#time").max) > 200);
   await page.locator("#time").evaluate((slider) => {
     slider.value = "100";
     slider.dispatchEvent(new Event("input"));

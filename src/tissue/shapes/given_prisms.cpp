@@ -81,8 +81,8 @@ void check_polygons(const PrismSheet& sheet, bool mended) {
             "apical side",
             name, prism_at(sheet, cell));
       if (const std::string flaw = polygon_flaw(*vertices, polygon, normals[cell]); !flaw.empty())
-        throw MeshError("the {} polygon of {} {}{}; move its corners", name, prism_at(sheet, cell), flaw,
-                        mended ? "" : " (mend = true sharpens wide angles)");
+        throw MeshError("the {} polygon of {} {}; {}", name, prism_at(sheet, cell), flaw,
+                        mended ? "move its corners" : "set mend = true, or move its corners");
     }
   }
 }

@@ -225,7 +225,7 @@ std::string polygon_flaw(const Vectors& vertices, const std::vector<std::size_t>
   for (const double angle : angles) turn += 180 - angle;
   const double widest = *std::ranges::max_element(angles);
   // Convex at every corner and once around: it cannot cross itself.
-  if (!(std::abs(turn - 360) < 1) || polygon.size() < 3) return "crosses itself";
+  if (!(std::abs(turn - 360) < 1) || polygon.size() < 3) return "crosses itself, or has a side without length";
   return widest < 179 ? "" : fmt::format("is not convex, with a corner of {:.0f} degrees", widest);
 }
 
