@@ -22,7 +22,7 @@ double even_term(const Vec3& d) { return d.x() * d.x() * (1 - d.x() * d.x()); }
 double odd_term(const Vec3& d) { return d.z() * d.x() * d.x() * (1 - d.x() * d.x() / 2); }
 
 // The outline in the plane y = 0 of the scaled egg.
-struct Outline {
+struct EggOutline {
   double even, odd;
 
   // At an angle from +x; towards the back where it is positive.
@@ -57,10 +57,10 @@ struct Outline {
 };
 
 // Newton's method by differences: the terms that give these sags (as shares of the half height).
-Outline outline_with(double belly_sag, double back_sag) {
-  Outline outline{0, 0};
+EggOutline outline_with(double belly_sag, double back_sag) {
+  EggOutline outline{0, 0};
   const Eigen::Vector2d wanted(belly_sag, back_sag);
-  const auto sags = [](const Outline& o) { return Eigen::Vector2d(o.sag(-1), o.sag(1)); };
+  const auto sags = [](const EggOutline& o) { return Eigen::Vector2d(o.sag(-1), o.sag(1)); };
   for (int iteration = 0; iteration < 50; ++iteration) {
     const Eigen::Vector2d now = sags(outline);
     if ((now - wanted).norm() < 1e-10) break;
@@ -138,7 +138,7 @@ StarSurface egg_surface(const EggShape& shape) {
       throw MeshError("an egg of {:.4g} x {:.4g} x {:.4g} um; lengths must be positive", shape.length_um,
                       shape.width_um, shape.height_um);
   Vec3 half_axes = 0.5 * Vec3(shape.length_um, shape.width_um, shape.height_um);
-  Outline outline{0, 0};
+  EggOutline outline{0, 0};
   if (shape.belly_sag_um || shape.back_sag_um) {
     const double usual = 0.2 * half_axes.z();
     outline = outline_with(shape.belly_sag_um.value_or(usual) / half_axes.z(),

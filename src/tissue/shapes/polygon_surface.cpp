@@ -11,14 +11,14 @@ namespace plica {
 namespace {
 
 // One side of a polygon, to be matched with that of its neighbour.
-struct Side {
+struct PolygonSide {
   std::size_t low, high;  // vertices
   std::size_t polygon, place;
   bool rises;  // from low to high
 };
 
-std::vector<Side> sorted_sides(const PolygonSurface& surface) {
-  std::vector<Side> sides;
+std::vector<PolygonSide> sorted_sides(const PolygonSurface& surface) {
+  std::vector<PolygonSide> sides;
   for (std::size_t p = 0; p < surface.polygons.size(); ++p) {
     const auto& polygon = surface.polygons[p];
     for (std::size_t k = 0; k < polygon.size(); ++k) {
@@ -27,7 +27,7 @@ std::vector<Side> sorted_sides(const PolygonSurface& surface) {
       sides.push_back({std::min(from, to), std::max(from, to), p, k, from < to});
     }
   }
-  std::ranges::stable_sort(sides, {}, [](const Side& side) { return std::pair(side.low, side.high); });
+  std::ranges::stable_sort(sides, {}, [](const PolygonSide& side) { return std::pair(side.low, side.high); });
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     if (sides[i].low != sides[i + 1].low || sides[i].high != sides[i + 1].high) continue;
     const bool third = i + 2 < sides.size() && sides[i + 2].low == sides[i].low && sides[i + 2].high == sides[i].high;
@@ -149,7 +149,7 @@ PolygonFan fan_about(const Vectors& vertices, const std::vector<std::size_t>& po
 std::vector<std::vector<std::size_t>> polygon_neighbours(const PolygonSurface& surface) {
   std::vector<std::vector<std::size_t>> neighbours;
   for (const auto& polygon : surface.polygons) neighbours.emplace_back(polygon.size(), no_polygon);
-  const std::vector<Side> sides = sorted_sides(surface);
+  const std::vector<PolygonSide> sides = sorted_sides(surface);
   for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
     if (sides[i].low != sides[i + 1].low || sides[i].high != sides[i + 1].high) continue;
     neighbours[sides[i].polygon][sides[i].place] = sides[i + 1].polygon;
