@@ -140,10 +140,10 @@ class Law {
   /// may omit blocks that would fill the matrix; directions then take more iterations.
   virtual void add_tangent(const Step& step, TangentSink& tangent) const = 0;
 
-  /// Return the groups of nodes that the law joins; valid for this revision of the pattern, and only their blocks are
+  /// Return the groups of nodes that the law joins; valid until their revision changes, and only their blocks are
   /// in the tangent. Laws on single nodes have none.
   [[nodiscard]] virtual NodeGroups node_groups(std::span<const double> /*internal*/) const { return {}; }
-  [[nodiscard]] virtual int pattern_revision(std::span<const double> /*internal*/) const { return 0; }
+  [[nodiscard]] virtual int groups_revision(std::span<const double> /*internal*/) const { return 0; }
 
   /// Return the force error caused by rounding of positions (um), nN, norm over nodes: a lower bound for convergence.
   /// (Elasticity: Model::elastic_rounding.)
@@ -156,10 +156,16 @@ class Law {
 
   /// Return the internal state before the first step, or at the end of a converged step (which may still be rejected
   /// for its error; the law is not notified). A law that remembers what changes at a rate keeps it twice, for the
-  /// beginning of this step and of the step before, since steps of second order need both (Step::extrapolated).
+  /// beginning of this step and of the step before, since steps of second order need both (Step::extrapolated). With
+  /// mirror planes the law exists twice, for the solved side and for the whole tissue (FullModel): both are asked.
   [[nodiscard]] virtual std::vector<double> first_internal(const Tissue& /*tissue*/) const { return {}; }
   [[nodiscard]] virtual std::vector<double> next_internal(const Step& step) const {
     return {step.internal.begin(), step.internal.end()};
+  }
+  /// Whether an internal state of a checkpoint can be read; `tissue` is the present one. The default is for states of
+  /// constant length.
+  [[nodiscard]] virtual bool fits(std::span<const double> internal, const Tissue& tissue) const {
+    return internal.size() == first_internal(tissue).size();
   }
 
   /// Return the law for the tissue after a division, with nodes at `positions`. Forces on existing nodes are

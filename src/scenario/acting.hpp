@@ -26,9 +26,9 @@ struct Acting {
   const ActingInput& input;
   std::string_view faces_key = {};  // faces, edges or face; empty: acts on whole cells
   bool can_be_ablated = false;
-  bool contracts = false;        // apical surfaces, where a furrow is measured by default
-  bool is_constant = false;      // a tension that does not depend on the deformation
-  bool has_sudden_onset = true;  // without a program
+  bool contracts = false;         // apical surfaces, where a furrow is measured by default
+  bool is_constant = false;       // a tension that does not depend on the deformation
+  bool has_sudden_onset = false;  // without its program
   std::vector<Force> forces = {};
 };
 

@@ -309,7 +309,7 @@ std::span<const Pair> SelfContact::pairs_of(std::span<const double> internal) {
 
 // An internal state is the revision of the pattern, then the numbers of pairs.
 std::vector<double> SelfContact::packed(const std::vector<Pair>& pairs, std::span<const double> before) const {
-  std::vector<double> numbers = {static_cast<double>(pattern_revision(before))};
+  std::vector<double> numbers = {static_cast<double>(groups_revision(before))};
   const auto* of_pairs = reinterpret_cast<const double*>(pairs.data());
   numbers.insert(numbers.end(), of_pairs, of_pairs + numbers_of_pair * pairs.size());
   NodeGroups joined, joined_before;

@@ -18,6 +18,7 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
 
 void describe(const P& input, const Scenario& scenario, Acting& acting) {
   acting.faces_key = "face";
+  acting.has_sudden_onset = true;
   acting.forces = {{"pressure_Pa", input.pressure_Pa, scenario.elasticity.young_modulus_Pa}};
 }
 
