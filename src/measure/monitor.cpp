@@ -173,13 +173,13 @@ std::vector<double> volumes(const Monitor& monitor, const Moment& moment) {
 }
 
 std::vector<double> areas(const Monitor& monitor, const Moment& moment) {
-  const auto areas_of = monitor.face == Monitor::Face::basal ? basal_areas : apical_areas;
-  return at_cells(monitor, moment, areas_of(moment.model.tissue, moment.state.positions));
+  const CellSide side = monitor.face.value_or(CellSide::apical);
+  return at_cells(monitor, moment, face_areas(moment.model.tissue, side, moment.state.positions));
 }
 
 std::vector<double> area_ratios(const Monitor& monitor, const Moment& moment) {
-  std::vector<double> ratios = apical_areas(moment.model.tissue, moment.state.positions);
-  const std::vector<double> at_rest = rest_apical_areas(moment.model.tissue);
+  std::vector<double> ratios = face_areas(moment.model.tissue, CellSide::apical, moment.state.positions);
+  const std::vector<double> at_rest = rest_face_areas(moment.model.tissue, CellSide::apical);
   for (std::size_t c = 0; c < ratios.size(); ++c) ratios[c] /= at_rest[c];
   return at_cells(monitor, moment, ratios);
 }
@@ -254,12 +254,12 @@ std::string Monitor::column() const {
 std::vector<NodeId> monitored_nodes(const Monitor& monitor, const Tissue& tissue) {
   const CellSet& region = tissue.regions.at(monitor.region);
   std::vector<bool> monitored(tissue.node_count(), false);
-  if (monitor.face == Monitor::Face::any) {
+  if (!monitor.face) {
     for (std::size_t e = 0; e < tissue.elements.size(); ++e)
       if (region[tissue.element_cell[e].index()])
         for (const NodeId node : tissue.elements[e]) monitored[node.index()] = true;
   } else {
-    for (const Facet& facet : monitor.face == Monitor::Face::apical ? tissue.apical_facets : tissue.basal_facets)
+    for (const Facet& facet : tissue.facets(*monitor.face))
       if (region[facet.cell.index()])
         for (const NodeId node : facet.nodes) monitored[node.index()] = true;
   }
@@ -273,7 +273,7 @@ std::vector<CellId> monitored_cells(const Monitor& monitor, const Tissue& tissue
   CellSet chosen = tissue.regions.at(monitor.region);
   if (monitor.quantity->of == Of::side) {
     CellSet has_side(chosen.size(), false);
-    for (const Facet& facet : monitor.face == Monitor::Face::basal ? tissue.basal_facets : tissue.apical_facets)
+    for (const Facet& facet : tissue.facets(monitor.face.value_or(CellSide::apical)))
       has_side[facet.cell.index()] = chosen[facet.cell.index()];
     chosen = std::move(has_side);
   }

@@ -41,15 +41,14 @@ enum class Over { mean, max, min, sum, rms };
 
 /// Monitor. The region is looked up at each use, since divisions replace the tissue.
 struct Monitor {
-  enum class Face { any, apical, basal };
   enum class ReferenceAt { same_time, end };
 
   std::string name;
   const Quantity* quantity = nullptr;
   std::string region = "all";
-  Face face = Face::any;    // only nodes of this side; for areas the side (any: apical)
-  std::optional<int> axis;  // component 0, 1 or 2; empty: norm
-  std::string from;         // for forces: region of the cells that exert them; empty: all
+  std::optional<CellSide> face;  // only nodes of this side; empty: all; for areas: apical
+  std::optional<int> axis;       // component 0, 1 or 2; empty: norm
+  std::string from;              // for forces: region of the cells that exert them; empty: all
   Over over = Over::mean;
   std::optional<double> at_s;  // time of the value in the summary; empty: the last
   double poisson_ratio = 0;    // for the energy norm

@@ -34,13 +34,13 @@ Inertia::Inertia(const Tissue& tissue, double density) : density_(density) {
   coefficients_ = lumped_masses(tissue, density);
 }
 
-FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellPattern pattern, double pressure, Program program)
-    : on_apical_(on_apical),
+FacePressure::FacePressure(const Tissue& tissue, CellSide side, CellPattern pattern, double pressure, Program program)
+    : side_(side),
       pattern_(std::move(pattern)),
       pressure_(pressure),
       loads_(tissue.node_count(), Vec3::Zero()),
       program_(std::move(program)) {
-  for (const Facet& facet : on_apical ? tissue.apical_facets : tissue.basal_facets) {
+  for (const Facet& facet : tissue.facets(side)) {
     if (!pattern_.cells[facet.cell.index()]) continue;
     const double own = pressure * pattern_.strengths[facet.cell.index()];
     // The consistent load of a uniform pressure on a bilinear facet: integral of N_i n dA, 2 x 2 Gauss points.

@@ -121,7 +121,7 @@ class Inertia final : public NodeLaw<Inertia> {
 class FacePressure final : public Law {
  public:
   /// Make the law with `pressure` in kPa, times the strengths of cells; delays are ignored.
-  FacePressure(const Tissue& tissue, bool on_apical, CellPattern pattern, double pressure, Program program);
+  FacePressure(const Tissue& tissue, CellSide side, CellPattern pattern, double pressure, Program program);
 
   [[nodiscard]] std::string_view name() const override { return "pressure"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<FacePressure>(*this); }
@@ -147,11 +147,11 @@ class FacePressure final : public Law {
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.jumps_s(); }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const Division& division,
                                                     std::span<const Vec3> /*positions*/) const override {
-    return std::make_unique<FacePressure>(tissue, on_apical_, pattern_.after_division(division), pressure_, program_);
+    return std::make_unique<FacePressure>(tissue, side_, pattern_.after_division(division), pressure_, program_);
   }
 
  private:
-  bool on_apical_;
+  CellSide side_;
   CellPattern pattern_;
   double pressure_;
   Vectors loads_;  // nodes; nN at activity 1

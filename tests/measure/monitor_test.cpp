@@ -71,7 +71,7 @@ TEST(Monitor, ReadsNodesOfItsRegionAndSide) {
   Monitor monitor = monitor_of("displacement");
   EXPECT_EQ(monitored_nodes(monitor, model.tissue).size(), 8U);
   const double bottom = model.tissue.rest_positions[model.tissue.cells[0].corners[0].index()].z();
-  for (const auto& [face, height] : {std::pair(Monitor::Face::apical, 40.0), {Monitor::Face::basal, 0.0}}) {
+  for (const auto& [face, height] : {std::pair(CellSide::apical, 40.0), {CellSide::basal, 0.0}}) {
     monitor.face = face;
     const auto nodes = monitored_nodes(monitor, model.tissue);
     ASSERT_EQ(nodes.size(), 4U);
@@ -122,7 +122,7 @@ TEST(Monitor, AreaOfEitherSide) {
     if (x.z() == top) x.y() *= 0.5;
   Monitor monitor = monitor_of("area", "all");
   EXPECT_NEAR(number(monitor, model, state), 200, 1e-10);
-  monitor.face = Monitor::Face::basal;
+  monitor.face = CellSide::basal;
   EXPECT_NEAR(number(monitor, model, state), 400, 1e-10);
   monitor.over = Over::sum;
   EXPECT_NEAR(number(monitor, model, state), 1200, 1e-10);
@@ -173,9 +173,9 @@ TEST(Monitor, ForceIsThatOfTheStandingBody) {
   State state = rest_state(model);
   for (Vec3& v : state.velocities) v = Vec3(1, 2, 3);
   Monitor monitor = monitor_of("force", "all");
-  monitor.face = Monitor::Face::apical;
+  monitor.face = CellSide::apical;
   EXPECT_NEAR(number(monitor, model, state), 40 * std::sqrt(2.0), 1e-9);
-  monitor.face = Monitor::Face::basal;
+  monitor.face = CellSide::basal;
   EXPECT_NEAR(number(monitor, model, state), 0, 1e-9);
   // Elasticity counts, too: stretched along z, the body pulls its top down. Contractions lie across.
   for (Vec3& x : state.positions) x.z() *= 1.1;

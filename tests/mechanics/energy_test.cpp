@@ -40,7 +40,7 @@ TEST(EnergyFlow, IsTheWorkOfTheLawsForces) {
   check("shell drag", ShellDrag(tissue, Capsule{.half_axis_um = 0, .radius_um = 1}, 0.14));
   check("corner barrier", CornerBarrier(tissue, 1, 0.9));
   check("drag", SurfaceDrag(tissue, 0.14));
-  check("pressure", FacePressure(tissue, true, all, 0.3, rising));
+  check("pressure", FacePressure(tissue, CellSide::apical, all, 0.3, rising));
   const ContractionRule springs{
       .stiffness = 2, .diagonals = true, .rest_length_ratio = 0.4, .preload = 1, .damping = 3};
   check("contraction", Contraction(contraction_springs(tissue, all, springs), rising));

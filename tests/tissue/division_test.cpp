@@ -310,7 +310,7 @@ TEST(PolygonDivision, OfAHexagonGivesTwoPentagonsAndStopsInItsNeighbours) {
       for (const auto& wall : tissue.cells[c].walls) stops += static_cast<int>(wall.size()) - 2;
     }
   EXPECT_EQ(stops, 2);
-  const std::vector<double> areas = apical_areas(tissue, tissue.rest_positions);
+  const std::vector<double> areas = face_areas(tissue, CellSide::apical, tissue.rest_positions);
   EXPECT_NEAR(areas[middle], areas[9], 1e-9);
 }
 

@@ -120,7 +120,7 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
   std::map<NodeId, std::vector<std::size_t>> of_node;
   std::map<NodeId, double> area_of_node;
   std::vector<double> areas;  // 0 of images, whose points are not this side's
-  for (const Facet& facet : rule.side == CellSide::apical ? whole.apical_facets : whole.basal_facets) {
+  for (const Facet& facet : whole.facets(rule.side)) {
     const bool is_own = mirror_.original(facet.cell) == facet.cell;
     areas.push_back(is_own ? facet_area(rest_corners(whole, facet)) : 0);
     for (const NodeId node : facet.nodes) {

@@ -27,14 +27,6 @@ Vec24 without_mean(const Vec24& vectors) {
   return result;
 }
 
-double rest_volume(const Tissue& tissue, CellId id) {
-  const Cell& cell = tissue.cells[id.index()];
-  double volume = 0;
-  for (int e = 0; e < cell.element_count; ++e)
-    volume += hex_volume(tissue.element_rest_shape[cell.first_element.index() + e]);
-  return volume;
-}
-
 }  // namespace
 
 AttractorModuli attractor_moduli(const HexPoints& rest, double stiffness) {
@@ -67,7 +59,7 @@ void ShapeMemory::fit(const Tissue& tissue, std::size_t e) {
   const double scale = std::cbrt(spread(rest).determinant());
   for (int i = 0; i < 8; ++i) element.frame[i] = element.rest[i] / scale;
   if (shear_viscosity_ > 0) element.viscosity = incompatible_stiffness(rest, viscous_moduli(shear_viscosity_));
-  const double share = std::cbrt(hex_volume(rest) / rest_volume(tissue, tissue.element_cell[e]));
+  const double share = std::cbrt(hex_volume(rest) / rest_volume(tissue, tissue.cells[tissue.element_cell[e].index()]));
   stiffness_[e] = springs_.stiffness > 0 ? springs_.stiffness * share
                                          : springs_.shear_modulus / attractor_moduli(rest, 1).mean_shear();
   preload_[e] = springs_.preload * share * share;
