@@ -1,5 +1,7 @@
 // Measure sets ([measure] sets): columns that a scenario chooses together. A set is one function: its columns, what it
-// keeps over a run (sites, reference values) and how that follows divisions. columns.cpp lists all sets.
+// keeps over a run (sites, reference values) and how that follows divisions. What is kept is constant between divisions
+// and in no checkpoint: a resumed run begins the set again, then calls `follow_division` once, with all divisions as
+// one that has no new nodes. columns.cpp lists all sets.
 #pragma once
 
 #include <type_traits>

@@ -164,7 +164,7 @@ class Law {
   }
   /// Whether an internal state of a checkpoint can be read; `tissue` is the present one. The default is for states of
   /// constant length.
-  [[nodiscard]] virtual bool fits(std::span<const double> internal, const Tissue& tissue) const {
+  [[nodiscard]] virtual bool accepts(std::span<const double> internal, const Tissue& tissue) const {
     return internal.size() == first_internal(tissue).size();
   }
 
@@ -195,9 +195,10 @@ class Law {
 
   /// Return the law for the tissue after growth, in which these elements have other rest shapes, and cells other target
   /// volumes.
-  [[nodiscard]] virtual std::unique_ptr<Law> grown(const Tissue& /*tissue*/,
-                                                   std::span<const ElementId> /*elements*/) const {
-    return clone();
+  [[nodiscard]] virtual std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const {
+    std::unique_ptr<Law> law = clone();
+    for (const ElementId e : elements) law->fit(tissue, e.index());
+    return law;
   }
 
   /// Return times at which its programs begin or bend, s; steps end on them.
@@ -230,6 +231,9 @@ class Law {
   [[nodiscard]] virtual std::span<const double> masses() const { return {}; }
 
  private:
+  /// Compute its data of an element from the rest shape.
+  virtual void fit(const Tissue& /*tissue*/, std::size_t /*element*/) {}
+
   std::string label_;
 };
 

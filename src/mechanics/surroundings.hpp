@@ -11,7 +11,8 @@
 namespace plica {
 
 /// Law that resists displacements d of single nodes: energy sum r/2 |d|^2. `Self` has `dissipates`, remade(tissue) and
-/// resist(step, node, take), which calls take(node, r) for nodes that it resists; r, nN/um, is a number or a matrix.
+/// resist(step, node, take), which calls take(node, r) for nodes that it resists; r, nN/um, is a number or a matrix. It
+/// may hide `moved`, as Inertia does. `remade` has the tissue only, also after a division: keep a region by its name.
 template <class Self>
 class NodeLaw : public Law {
  public:

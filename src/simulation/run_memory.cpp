@@ -8,10 +8,10 @@ namespace plica {
 namespace {
 
 // Activities that were set from outside follow the law's own numbers (GivenActivities).
-bool fits(std::span<const double> internal, const Law& law, const Tissue& tissue) {
+bool accepts(const Law& law, std::span<const double> internal, const Tissue& tissue) {
   const std::size_t cells = tissue.cells.size();
-  return law.fits(internal, tissue) || (law.is_active() && internal.size() >= cells &&
-                                        law.fits(internal.first(internal.size() - cells), tissue));
+  return law.accepts(internal, tissue) ||
+         (law.is_active() && internal.size() >= cells && law.accepts(internal.first(internal.size() - cells), tissue));
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
 std::optional<std::string> why_unfit(std::span<const std::vector<double>> internals, const Model& model) {
   if (internals.size() != model.laws.size()) return "its laws are not those of this embryo";
   for (std::size_t l = 0; l < internals.size(); ++l)
-    if (!fits(internals[l], *model.laws[l], model.tissue))
+    if (!accepts(*model.laws[l], internals[l], model.tissue))
       return fmt::format("its internal state of {} does not fit this law", model.laws[l]->label());
   return std::nullopt;
 }

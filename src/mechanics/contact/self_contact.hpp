@@ -62,7 +62,7 @@ class SelfContact final : public Law {
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override {
     return packed(pairs(step.positions, step.internal), step.internal);
   }
-  [[nodiscard]] bool fits(std::span<const double> internal, const Tissue& /*tissue*/) const override {
+  [[nodiscard]] bool accepts(std::span<const double> internal, const Tissue& /*tissue*/) const override {
     return internal.empty() || internal.size() % numbers_of_pair == 1;
   }
   /// Return a law without pairs until the next accepted step; also for a part of the tissue, since contact belongs to

@@ -69,12 +69,6 @@ std::unique_ptr<Law> ShapeMemory::after_division(const Tissue& tissue, const Div
   return std::make_unique<ShapeMemory>(tissue, springs_, shear_viscosity_);
 }
 
-std::unique_ptr<Law> ShapeMemory::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
-  auto law = std::make_unique<ShapeMemory>(*this);
-  for (const ElementId e : elements) law->fit(tissue, e.index());
-  return law;
-}
-
 // E = sum k |u_i|^2 / 2 + P (s_i - e). The attractor's centre is the nodes' mean, so a node that moves takes an eighth
 // of that from all: q_i is the tension of its spring less the mean of all eight.
 double ShapeMemory::respond(std::size_t element, const Vec24& u, Vec24& q) const {
