@@ -70,19 +70,6 @@ inline MeasureSet set_of(std::string_view name, std::string_view needs, std::fun
   return {name, needs, std::move(begin), std::move(columns), std::move(is_usual)};
 }
 
-MeasureSet run_set();
-MeasureSet fold_set();
-MeasureSet furrow_set();
-MeasureSet contact_set();
-MeasureSet closing_set();
-MeasureSet lumen_set();
-MeasureSet enclosed_set();
-MeasureSet shell_set();
-MeasureSet perivitelline_set();
-MeasureSet flanks_set();
-MeasureSet bending_set();
-MeasureSet projection_set();
-
 /// All sets; the first is measured in every run.
 std::span<const MeasureSet> measure_sets();
 

@@ -186,6 +186,7 @@ Division divide_cells(Model& model, State& state, std::span<const PlannedDivisio
   divide_holds(model, division);
   divide_obstacles(model, state, division);
   if (!model.masses().empty()) restore_momentum(model, division, momentum_before, state.velocities);
+  model.revision = ++Model::revisions;
   return division;
 }
 

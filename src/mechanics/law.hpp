@@ -162,8 +162,7 @@ class Law {
   [[nodiscard]] virtual std::vector<double> next_internal(const Step& step) const {
     return {step.internal.begin(), step.internal.end()};
   }
-  /// Whether an internal state of a checkpoint can be read; `tissue` is the present one. The default is for states of
-  /// constant length.
+  /// Whether the law can read an internal state of a checkpoint. The default is for states of constant length.
   [[nodiscard]] virtual bool accepts(std::span<const double> internal, const Tissue& tissue) const {
     return internal.size() == first_internal(tissue).size();
   }

@@ -48,6 +48,15 @@ class NodeLaw : public Law {
     return step.positions[node] - step.before([node](std::span<const Vec3> x) { return x[node]; });
   }
 
+  /// Add `factor` times the reference areas of facets, a quarter of each per corner.
+  void add_areas(const Tissue& tissue, std::span<const Facet> facets, double factor) {
+    coefficients_.resize(tissue.node_count());
+    for (const Facet& facet : facets) {
+      const double of_corner = factor * facet_area(rest_corners(tissue, facet)) / 4;
+      for (const NodeId node : facet.nodes) coefficients_[node.index()] += of_corner;
+    }
+  }
+
   [[nodiscard]] double norm() const {
     double sum = 0;
     for (const double coefficient : coefficients_) sum += coefficient * coefficient;

@@ -262,6 +262,36 @@ TEST(ForcesOfCells, OfPartsAddUpToThoseOfTheWhole) {
   for (std::size_t n = 0; n < of_all.size(); ++n) EXPECT_LE((of_all[n] - expected[n]).norm(), 1e-12 * largest(of_all));
 }
 
+// A monitor keeps the laws of its cells from step to step, but not over a division or for another model.
+TEST(ForcesOfCells, AreThoseOfThePresentModel) {
+  Model model(distorted_block({.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}}, 1, 3));
+  model.tissue.regions["left"] = CellSet(12, false);
+  model.tissue.regions["left"][0] = model.tissue.regions["left"][5] = true;
+  add_elasticity(model);
+  add_contraction(model, CellSet(12, true), {.stiffness = 2, .across_ratio = 0.4});
+  Random random(5);
+  State state = rest_state(model);
+  Monitor kept = monitor_of("force", "all");
+  kept.from = "left";
+  const auto expect_as_anew = [&](const Model& now) {
+    Monitor anew = monitor_of("force", "all");
+    anew.from = "left";
+    EXPECT_EQ(read_monitor(kept, {now, state}).values, read_monitor(anew, {now, state}).values);
+    EXPECT_TRUE(kept.apart->are_of(now));
+  };
+  for (int step = 0; step < 3; ++step) {
+    for (Vec3& x : state.positions) x += random.vector(0.5);
+    model.tissue.place_hanging(state.positions);
+    const CellsApart* before = kept.apart.get();
+    expect_as_anew(model);
+    EXPECT_EQ(kept.apart.get() == before, step == 1) << "kept from one step to the next, but not over the division";
+    if (step == 1) divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
+  }
+  const Model copy(model);
+  EXPECT_FALSE(kept.apart->are_of(copy));
+  expect_as_anew(copy);
+}
+
 Reading reading(std::vector<double> values) {
   const auto number = combined(Over::mean, values);
   return {std::move(values), number};
