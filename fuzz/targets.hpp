@@ -10,7 +10,7 @@ namespace plica {
 bool fuzz_scenario(std::string_view bytes);
 
 /// Mesh: the first byte is the number of divisions, the rest the output of the process with VTK's readers
-/// (tissue/files/mesh_bytes.hpp).
+/// (tissue/files/child_reading.hpp).
 bool fuzz_mesh(std::string_view bytes);
 
 /// Polygons: the first byte is the format, OBJ ('o'), OFF ('f') or PLY, the rest the file, which is repaired and built

@@ -2,8 +2,8 @@
 """Put the results of `plica reproduce paper` into docs/science/reproduction.md.
 
 Usage: update_reproduction.py DIR, the --out directory of a full (not --quick) run. Needs Matplotlib, and `plica` (or the program that
-PLICA names). Written are docs/science/reproduction.csv, the page's count of verdicts, its tables between <!-- claims --> or
-<!-- errors --> (from reproduction-errors.csv, by docs/science/readings.py) and <!-- end -->, and docs/images/reproduction/.
+PLICA names). Written are docs/science/reproduction.csv, the page's tables between <!-- claims --> or <!-- errors --> (from
+reproduction-errors.csv, by docs/science/readings.py) and <!-- end -->, the counts of verdicts on three pages, and docs/images/reproduction/.
 """
 import csv
 import os
@@ -19,6 +19,9 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 SCIENCE = Path(__file__).resolve().parent.parent / "docs/science"
 PAGE, IMAGES = SCIENCE / "reproduction.md", SCIENCE.parent / "images/reproduction"
+COUNTS = {PAGE: "Of {} claims, {} are reproduced, {} under this reading, and {} are not",
+          SCIENCE / "README.md": "of {}, {} hold, {} under one reading, {} do not",
+          SCIENCE.parent / "developers/verification.md": "{} claims of Demongeot et al. (2016) | {} hold, {} under one reading, {} do not"}
 VERDICTS = ("reproduced", "under this reading", "not reproduced")
 SUBJECTS = {"2.1": "meshes and sizes", "2.3": "contraction", "2.5": "volume", "2.6": "cell division", "2.7": "stop", "3.1": "furrow of the pill",
             "3.2": "furrow of the sphere", "3.3": "vitelline membrane", "4": "discussion", "5": "conclusion", "note": "notes"}
@@ -108,9 +111,13 @@ def main():
     with (SCIENCE / "reproduction-errors.csv").open(newline="", encoding="utf-8") as file:
         header, *errors = csv.reader(file)
     page = fill(page, "errors", table(header, errors))
-    page = re.sub(r"Of \d+ claims, \d+ are reproduced, \d+ under this reading, and \d+ are not",
-                  "Of {} claims, {} are reproduced, {} under this reading, and {} are not".format(len(rows), *counts[-1][1:]), page)
     PAGE.write_text(page, encoding="utf-8")
+    for path, text in COUNTS.items():
+        pattern = re.escape(text).replace(r"\{\}", r"\d+")
+        page, found = re.subn(pattern, text.format(len(rows), *counts[-1][1:]), path.read_text(encoding="utf-8"))
+        if found != 1:
+            sys.exit(f"{path}: has {found} counts of verdicts, as in: {text}")
+        path.write_text(page, encoding="utf-8")
 
     plt.rcParams.update({"svg.hashsalt": "plica", "svg.fonttype": "none"})
     draw_speeds(results, "pill", "fig8a-speeds")

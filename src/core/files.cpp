@@ -26,10 +26,6 @@ std::string reason(int error) { return std::generic_category().message(error); }
   throw FileError(fmt::format("{}: cannot be written: {}", path.string(), why));
 }
 
-[[noreturn]] void throw_unread(const fs::path& path, const std::string& why) {
-  throw FileError(fmt::format("{}: cannot be read: {}", path.string(), why));
-}
-
 int open_file(const fs::path& path, int flags) {
   int descriptor = -1;
   do descriptor = ::open(path.c_str(), flags | O_CLOEXEC, file_mode);
@@ -120,6 +116,10 @@ fs::path write_beside(const fs::path& path, std::string_view content, Sync sync)
   const int error = write_and_close(descriptor, content, sync);
   if (error != 0) remove_and_throw(temporary, path, error);
   return temporary;
+}
+
+void throw_unread(const fs::path& path, const std::string& why) {
+  throw FileError(fmt::format("{}: cannot be read: {}", path.string(), why));
 }
 
 std::string read_file(const fs::path& path, std::uintmax_t most_bytes) {

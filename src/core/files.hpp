@@ -11,6 +11,9 @@ namespace plica {
 
 inline constexpr std::uintmax_t largest_file_read_bytes = std::uintmax_t{256} << 20;
 
+/// Throw FileError `PATH: cannot be read: WHY`.
+[[noreturn]] void throw_unread(const std::filesystem::path& path, const std::string& why);
+
 /// Read a file. Throws FileError if it is unreadable, a directory, or larger than `most_bytes`.
 std::string read_file(const std::filesystem::path& path, std::uintmax_t most_bytes = largest_file_read_bytes);
 

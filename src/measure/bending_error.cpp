@@ -8,14 +8,10 @@
 namespace plica {
 namespace {
 
-std::vector<double> area_ratios(const Tissue& tissue, std::span<const Facet> facets, std::span<const Vec3> positions) {
-  std::vector<double> now(tissue.cells.size(), 0.0), rest(tissue.cells.size(), 0.0);
-  for (const Facet& facet : facets) {
-    now[facet.cell.index()] += facet_area(gather(positions, facet));
-    rest[facet.cell.index()] += facet_area(rest_corners(tissue, facet));
-  }
-  for (std::size_t c = 0; c < now.size(); ++c) now[c] = rest[c] > 0 ? now[c] / rest[c] : 1;
-  return now;
+std::vector<double> face_area_ratios(const Tissue& tissue, CellSide side, std::span<const Vec3> positions) {
+  std::vector<double> ratios = face_areas(tissue, side, positions), rest = rest_face_areas(tissue, side);
+  for (std::size_t c = 0; c < ratios.size(); ++c) ratios[c] = rest[c] > 0 ? ratios[c] / rest[c] : 1;
+  return ratios;
 }
 
 bool overbends(const Model& model) {
@@ -28,8 +24,8 @@ std::optional<double> bending_error(const Model& model, std::span<const Vec3> po
   constexpr double error_per_area_ratio = 0.14, least_bending = 1e-9;
   if (!overbends(model)) return std::nullopt;
   const Tissue& tissue = model.tissue;
-  const std::vector<double> apical = area_ratios(tissue, tissue.apical_facets, positions),
-                            basal = area_ratios(tissue, tissue.basal_facets, positions);
+  const std::vector<double> apical = face_area_ratios(tissue, CellSide::apical, positions),
+                            basal = face_area_ratios(tissue, CellSide::basal, positions);
   double bending = 0, wrong = 0;
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     const double of_cell = std::abs(basal[c] - apical[c]);

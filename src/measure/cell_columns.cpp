@@ -62,8 +62,8 @@ Values inward_speeds(const C& c, const FurrowSites& sites) {
 MeasuredCells::MeasuredCells(const Model& of_model, const State& at_state)
     : model(of_model),
       state(at_state),
-      apical_areas(plica::apical_areas(model.tissue, state.positions)),
-      rest_apical_areas(plica::rest_apical_areas(model.tissue)) {}
+      apical_areas(face_areas(model.tissue, CellSide::apical, state.positions)),
+      rest_apical_areas(rest_face_areas(model.tissue, CellSide::apical)) {}
 
 std::vector<double> MeasuredCells::apical_area_ratios() const {
   std::vector<double> ratios(apical_areas.size(), none);
@@ -94,7 +94,7 @@ std::span<const CellColumn> cell_columns() {
       {"apical_area_um2", csv, nothing, "Apical area: bilinear facets, 2 × 2 Gauss points.",
        [](const C& c) { return c.apical_areas; }},
       {"basal_area_um2", csv, nothing, "Basal area.",
-       [](const C& c) { return basal_areas(c.model.tissue, c.state.positions); }},
+       [](const C& c) { return face_areas(c.model.tissue, CellSide::basal, c.state.positions); }},
       {"height_um", csv, nothing, "Cell height: mean length of the apicobasal edges.",
        of_each([](const Cell& cell, const State& state) { return cell_height(cell, state.positions); })},
       {"apical_area_ratio", csv, numbers, "Apical area / reference area; none (1 in snapshots) without an apical face.",

@@ -35,20 +35,16 @@ double mean_node_displacement(const Tissue& tissue, const MonitoredCells& cells,
 }
 
 double mean_apical_area_ratio(const Tissue& tissue, const MonitoredCells& cells, std::span<const Vec3> positions) {
-  std::vector<double> now(cells.size(), 0.0), rest(cells.size(), 0.0);
-  for (const Facet& facet : tissue.apical_facets)
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      if (facet.cell == cells[i]) {
-        now[i] += facet_area(gather(positions, facet));
-        rest[i] += facet_area(rest_corners(tissue, facet));
-      }
+  const std::vector<double> now = face_areas(tissue, CellSide::apical, positions),
+                            rest = rest_face_areas(tissue, CellSide::apical);
   double sum = 0;
-  for (std::size_t i = 0; i < cells.size(); ++i) sum += now[i] / rest[i];
+  for (const CellId cell : cells) sum += now[cell.index()] / rest[cell.index()];
   return sum / static_cast<double>(cells.size());
 }
 
 std::optional<double> min_apical_area_ratio(const Tissue& tissue, std::span<const Vec3> positions) {
-  const std::vector<double> now = apical_areas(tissue, positions), rest = rest_apical_areas(tissue);
+  const std::vector<double> now = face_areas(tissue, CellSide::apical, positions),
+                            rest = rest_face_areas(tissue, CellSide::apical);
   std::optional<double> least;
   for (std::size_t c = 0; c < now.size(); ++c)
     if (rest[c] > 0) least = std::min(least.value_or(now[c] / rest[c]), now[c] / rest[c]);

@@ -254,7 +254,7 @@ std::optional<double> rest_lumen_volume(const Subject& s) {
 
 std::optional<double> lumen_ratio(const M& m) {
   const auto volume = lumen_volume(m.model.tissue, m.state.positions);
-  return volume ? std::optional(*volume / m.of_run<double>()) : std::nullopt;
+  return volume ? std::optional(*volume / m.of_set<double>()) : std::nullopt;
 }
 
 std::optional<double> pressure_Pa(const M& m) {
@@ -338,13 +338,13 @@ MeasureSet flanks_set() {
                "Volume of the lateral ectoderm / reference volume: cells at 60–120° from the ventral midline, "
                "middle half of the length, weighted by their part of the angle.",
                [](const M& m) {
-                 return *flank_volume(m.model.tissue, m.state.positions) / m.of_run<Flanks>().volume_um3;
+                 return *flank_volume(m.model.tissue, m.state.positions) / m.of_set<Flanks>().volume_um3;
                }}),
        costly({"flank_section_area_ratio", last,
                "Cross-sectional area of the lateral ectoderm at x = 0 (60–120° from the ventral midline, both "
                "sides) / reference area; comparable with micrographs and two-dimensional models.",
                [](const M& m) {
-                 return *flank_section_area(m.model.tissue, m.state.positions) / m.of_run<Flanks>().section_um2;
+                 return *flank_section_area(m.model.tissue, m.state.positions) / m.of_set<Flanks>().section_um2;
                }})},
       of_embryo);
 }

@@ -12,6 +12,10 @@
 #include "measure/observation.hpp"
 
 namespace plica {
+
+MeasureSet run_set(), fold_set(), furrow_set(), contact_set(), closing_set(), lumen_set(), enclosed_set(), shell_set(),
+    perivitelline_set(), flanks_set(), bending_set(), projection_set(), shape_set();
+
 namespace {
 
 using enum InSummary;

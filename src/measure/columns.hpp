@@ -37,7 +37,7 @@ class ColumnInput {
 
   /// What the column's set keeps over the run.
   template <class Kept>
-  [[nodiscard]] const Kept& of_run() const {
+  [[nodiscard]] const Kept& of_set() const {
     return std::any_cast<const Kept&>(*kept);
   }
   /// Value that columns share, computed once per step; one function per type.

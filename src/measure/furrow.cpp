@@ -257,7 +257,7 @@ namespace {
 using enum InSummary;
 using M = ColumnInput;
 
-const FurrowSites& sites_of(const M& m) { return m.of_run<FurrowSites>(); }
+const FurrowSites& sites_of(const M& m) { return m.of_set<FurrowSites>(); }
 
 LipShape lips_of_step(const M& m) { return lip_shape(m.model.tissue, sites_of(m), m.state.positions); }
 

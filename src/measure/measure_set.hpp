@@ -1,5 +1,7 @@
 // Measure sets ([measure] sets): columns that a scenario chooses together. A set is one function: its columns, what it
-// keeps over a run (sites, reference values) and how that follows divisions. columns.cpp lists all sets.
+// keeps over a run (sites, reference values) and how that follows divisions. What is kept is constant between divisions
+// and in no checkpoint: a resumed run begins the set again, then calls `follow_division` once, with all divisions as
+// one that has no new nodes. columns.cpp lists all sets.
 #pragma once
 
 #include <type_traits>
@@ -67,20 +69,6 @@ inline MeasureSet set_of(std::string_view name, std::string_view needs, std::fun
                          std::vector<Column> columns, std::function<bool(const Subject&)> is_usual = always) {
   return {name, needs, std::move(begin), std::move(columns), std::move(is_usual)};
 }
-
-MeasureSet run_set();
-MeasureSet fold_set();
-MeasureSet furrow_set();
-MeasureSet contact_set();
-MeasureSet closing_set();
-MeasureSet lumen_set();
-MeasureSet enclosed_set();
-MeasureSet shell_set();
-MeasureSet perivitelline_set();
-MeasureSet flanks_set();
-MeasureSet bending_set();
-MeasureSet projection_set();
-MeasureSet shape_set();
 
 /// All sets; the first is measured in every run.
 std::span<const MeasureSet> measure_sets();

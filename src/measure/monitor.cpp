@@ -15,23 +15,28 @@
 
 namespace plica {
 
-Vectors forces_of_cells(const Model& model, const State& state, const CellSet& cells) {
-  Tissue part = model.tissue;
-  const TissueChange kept = keep_only(part, cells);
+// Without new cells and nodes, laws do not depend on the positions.
+CellsApart::CellsApart(const Model& model, const Vectors& positions, const CellSet& cells)
+    : revision_(model.revision), tissue_(model.tissue), kept_(keep_only(tissue_, cells)), volumes_(tissue_) {
+  for (const auto& law : model.laws) laws_.push_back(law->after_division(tissue_, kept_, positions));
+}
+
+Vectors CellsApart::forces(const Model& model, const State& state) const {
   const Vectors no_velocity(state.positions.size(), Vec3::Zero());
-  const Step now = motionless(state, no_velocity);
+  Step step = motionless(state, no_velocity);
   Vectors forces(state.positions.size(), Vec3::Zero());
-  for (std::size_t l = 0; l < model.laws.size(); ++l) {
-    const std::vector<double> internal = model.laws[l]->internal_after_division(state.internals[l], part, kept, {});
-    Step law_step = now;
-    law_step.internal = internal;
-    model.laws[l]->after_division(part, kept, state.positions)->add_forces(law_step, forces);
+  for (std::size_t l = 0; l < laws_.size(); ++l) {
+    const auto internal = model.laws[l]->internal_after_division(state.internals[l], tissue_, kept_, {});
+    step.internal = internal;
+    laws_[l]->add_forces(step, forces);
   }
-  const std::span<const double> pressures = state.pressures(model);
-  CellVolumes(part).add_forces(state.positions,
-                               inherited(kept, std::vector<double>(pressures.begin(), pressures.end())), forces);
-  part.carry_hanging(forces);
+  volumes_.add_forces(state.positions, inherited(kept_, state.multipliers), forces);
+  tissue_.carry_hanging(forces);
   return forces;
+}
+
+Vectors forces_of_cells(const Model& model, const State& state, const CellSet& cells) {
+  return CellsApart(model, state.positions, cells).forces(model, state);
 }
 
 namespace {
@@ -111,8 +116,9 @@ std::vector<double> deviations(const Monitor& monitor, const Moment& moment) {
 
 std::vector<double> node_forces(const Monitor& monitor, const Moment& moment) {
   const auto& [model, state, wall_s] = moment;
-  const Vectors forces = monitor.from.empty() ? driving_forces(model, state)
-                                              : forces_of_cells(model, state, model.tissue.regions.at(monitor.from));
+  if (!monitor.from.empty() && !(monitor.apart && monitor.apart->are_of(model)))
+    monitor.apart = std::make_shared<const CellsApart>(model, state.positions, model.tissue.regions.at(monitor.from));
+  const Vectors forces = monitor.from.empty() ? driving_forces(model, state) : monitor.apart->forces(model, state);
   return at_nodes(monitor, moment, [&](std::size_t n) { return forces[n]; });
 }
 
@@ -173,13 +179,13 @@ std::vector<double> volumes(const Monitor& monitor, const Moment& moment) {
 }
 
 std::vector<double> areas(const Monitor& monitor, const Moment& moment) {
-  const auto areas_of = monitor.face == Monitor::Face::basal ? basal_areas : apical_areas;
-  return at_cells(monitor, moment, areas_of(moment.model.tissue, moment.state.positions));
+  const CellSide side = monitor.face.value_or(CellSide::apical);
+  return at_cells(monitor, moment, face_areas(moment.model.tissue, side, moment.state.positions));
 }
 
 std::vector<double> area_ratios(const Monitor& monitor, const Moment& moment) {
-  std::vector<double> ratios = apical_areas(moment.model.tissue, moment.state.positions);
-  const std::vector<double> at_rest = rest_apical_areas(moment.model.tissue);
+  std::vector<double> ratios = face_areas(moment.model.tissue, CellSide::apical, moment.state.positions);
+  const std::vector<double> at_rest = rest_face_areas(moment.model.tissue, CellSide::apical);
   for (std::size_t c = 0; c < ratios.size(); ++c) ratios[c] /= at_rest[c];
   return at_cells(monitor, moment, ratios);
 }
@@ -254,12 +260,12 @@ std::string Monitor::column() const {
 std::vector<NodeId> monitored_nodes(const Monitor& monitor, const Tissue& tissue) {
   const CellSet& region = tissue.regions.at(monitor.region);
   std::vector<bool> monitored(tissue.node_count(), false);
-  if (monitor.face == Monitor::Face::any) {
+  if (!monitor.face) {
     for (std::size_t e = 0; e < tissue.elements.size(); ++e)
       if (region[tissue.element_cell[e].index()])
         for (const NodeId node : tissue.elements[e]) monitored[node.index()] = true;
   } else {
-    for (const Facet& facet : monitor.face == Monitor::Face::apical ? tissue.apical_facets : tissue.basal_facets)
+    for (const Facet& facet : tissue.facets(*monitor.face))
       if (region[facet.cell.index()])
         for (const NodeId node : facet.nodes) monitored[node.index()] = true;
   }
@@ -273,7 +279,7 @@ std::vector<CellId> monitored_cells(const Monitor& monitor, const Tissue& tissue
   CellSet chosen = tissue.regions.at(monitor.region);
   if (monitor.quantity->of == Of::side) {
     CellSet has_side(chosen.size(), false);
-    for (const Facet& facet : monitor.face == Monitor::Face::basal ? tissue.basal_facets : tissue.apical_facets)
+    for (const Facet& facet : tissue.facets(monitor.face.value_or(CellSide::apical)))
       has_side[facet.cell.index()] = chosen[facet.cell.index()];
     chosen = std::move(has_side);
   }

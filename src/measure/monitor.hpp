@@ -39,17 +39,33 @@ const Quantity* quantity_named(std::string_view name);  // null if unknown
 
 enum class Over { mean, max, min, sum, rms };
 
+/// Some cells of a model without the others, with laws of their own.
+class CellsApart {
+ public:
+  CellsApart(const Model& model, const Vectors& positions, const CellSet& cells);
+  [[nodiscard]] bool are_of(const Model& model) const { return model.revision == revision_; }
+  /// Return forces_of_cells in a state of that model.
+  [[nodiscard]] Vectors forces(const Model& model, const State& state) const;
+
+ private:
+  std::uint64_t revision_;  // of the model
+  Tissue tissue_;
+  TissueChange kept_;  // of its tissue
+  std::vector<std::unique_ptr<Law>> laws_;
+  CellVolumes volumes_;
+};
+
 /// Monitor. The region is looked up at each use, since divisions replace the tissue.
 struct Monitor {
-  enum class Face { any, apical, basal };
   enum class ReferenceAt { same_time, end };
 
   std::string name;
   const Quantity* quantity = nullptr;
   std::string region = "all";
-  Face face = Face::any;    // only nodes of this side; for areas the side (any: apical)
-  std::optional<int> axis;  // component 0, 1 or 2; empty: norm
-  std::string from;         // for forces: region of the cells that exert them; empty: all
+  std::optional<CellSide> face;                     // only nodes of this side; empty: all; for areas: apical
+  std::optional<int> axis;                          // component 0, 1 or 2; empty: norm
+  std::string from;                                 // for forces: region of the cells that exert them; empty: all
+  mutable std::shared_ptr<const CellsApart> apart;  // these, for the last model
   Over over = Over::mean;
   std::optional<double> at_s;  // time of the value in the summary; empty: the last
   double poisson_ratio = 0;    // for the energy norm

@@ -83,7 +83,7 @@ std::vector<Column> columns_of_every_run() {
       {"max_displacement_um", last, "Largest distance of a node from its reference position.", of(max_displacement)},
       {"mean_height_um", last, "Mean height of all cells.", of(mean_height)},
       costly({"tissue_volume_ratio", last, "Volume of all cells / reference volume.",
-              [](const M& m) { return tissue_volume(m.model, m.state.positions) / m.of_run<double>(); }}),
+              [](const M& m) { return tissue_volume(m.model, m.state.positions) / m.of_set<double>(); }}),
       {"self_intersections_time_s",
        whole_run,
        "First time with `self_intersections` > 0.",

@@ -195,6 +195,7 @@ TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDiv
   divide_holds(model, change);
   divide_obstacles(model, state, change);
   if (!model.masses().empty()) restore_momentum(model, change, momentum_before, state.velocities);
+  model.revision = ++Model::revisions;
   return change;
 }
 

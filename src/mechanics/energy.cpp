@@ -33,6 +33,18 @@ EnergyFlow viscous_energy_flow(const Law& law, const CompletedStep& completed) {
   return {.stored = now - law.energy(completed.begin), .dissipated = 2 * (law.energy(completed.motion) - now)};
 }
 
+// The work is that of the mean force of both ends of the step.
+EnergyFlow relaxing_energy_flow(const Law& law, const CompletedStep& completed) {
+  EnergyFlow flow = law.Law::energy_flow(completed);
+  Vectors mean(completed.end.positions.size(), Vec3::Zero());
+  law.add_forces(completed.begin, mean);
+  law.add_forces(completed.end, mean);
+  for (std::size_t n = 0; n < mean.size(); ++n)
+    flow.dissipated -= 0.5 * mean[n].dot(completed.end.positions[n] - completed.begin.positions[n]);
+  flow.dissipated -= flow.stored;
+  return flow;
+}
+
 std::vector<EnergyFlow> energy_flows(const Model& model, const State& before, const State& after) {
   CompletedStep completed{motionless(before, before.velocities), motionless(after, after.velocities), {}};
   completed.motion.positions = after.positions;

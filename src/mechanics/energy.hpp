@@ -18,6 +18,9 @@ Step motionless(const State& state, std::span<const Vec3> velocities);
 /// Return the flow of a law that resists rates linearly: twice its energy is dissipated.
 EnergyFlow viscous_energy_flow(const Law& law, const CompletedStep& completed);
 
+/// Return the flow of a law that stores energy and relaxes: what its forces do not store of their work is dissipated.
+EnergyFlow relaxing_energy_flow(const Law& law, const CompletedStep& completed);
+
 /// Return the energy flows of the step from `before` to `after`: of each law in model order, then of cell volumes,
 /// which do work only when cells grow. The model must have the rest shapes of growing cells midway through the step.
 std::vector<EnergyFlow> energy_flows(const Model& model, const State& before, const State& after);

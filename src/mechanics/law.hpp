@@ -145,10 +145,10 @@ class Law {
   /// may omit blocks that would fill the matrix; directions then take more iterations.
   virtual void add_tangent(const Step& step, TangentSink& tangent) const = 0;
 
-  /// Return the groups of nodes that the law joins; valid for this revision of the pattern, and only their blocks are
+  /// Return the groups of nodes that the law joins; valid until their revision changes, and only their blocks are
   /// in the tangent. Laws on single nodes have none.
   [[nodiscard]] virtual NodeGroups node_groups(std::span<const double> /*internal*/) const { return {}; }
-  [[nodiscard]] virtual int pattern_revision(std::span<const double> /*internal*/) const { return 0; }
+  [[nodiscard]] virtual int groups_revision(std::span<const double> /*internal*/) const { return 0; }
 
   /// Return the force error caused by rounding of positions (um), nN, norm over nodes: a lower bound for convergence.
   /// (Elasticity: Model::elastic_rounding.)
@@ -161,10 +161,15 @@ class Law {
 
   /// Return the internal state before the first step, or at the end of a converged step (which may still be rejected
   /// for its error; the law is not notified). A law that remembers what changes at a rate keeps it twice, for the
-  /// beginning of this step and of the step before, since steps of second order need both (Step::extrapolated).
+  /// beginning of this step and of the step before, since steps of second order need both (Step::extrapolated). With
+  /// mirror planes the law exists twice, for the solved side and for the whole tissue (FullModel): both are asked.
   [[nodiscard]] virtual std::vector<double> first_internal(const Tissue& /*tissue*/) const { return {}; }
   [[nodiscard]] virtual std::vector<double> next_internal(const Step& step) const {
     return {step.internal.begin(), step.internal.end()};
+  }
+  /// Whether the law can read an internal state of a checkpoint. The default is for states of constant length.
+  [[nodiscard]] virtual bool accepts(std::span<const double> internal, const Tissue& tissue) const {
+    return internal.size() == first_internal(tissue).size();
   }
 
   /// Return the law for the tissue after a division, with nodes at `positions`. Forces on existing nodes are
@@ -195,9 +200,10 @@ class Law {
 
   /// Return the law for the tissue after growth, in which these elements have other rest shapes, and cells other target
   /// volumes.
-  [[nodiscard]] virtual std::unique_ptr<Law> grown(const Tissue& /*tissue*/,
-                                                   std::span<const ElementId> /*elements*/) const {
-    return clone();
+  [[nodiscard]] virtual std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const {
+    std::unique_ptr<Law> law = clone();
+    for (const ElementId e : elements) law->fit(tissue, e.index());
+    return law;
   }
 
   /// Return times at which its programs begin or bend, s; steps end on them.
@@ -230,6 +236,9 @@ class Law {
   [[nodiscard]] virtual std::span<const double> masses() const { return {}; }
 
  private:
+  /// Compute its data of an element from the rest shape.
+  virtual void fit(const Tissue& /*tissue*/, std::size_t /*element*/) {}
+
   std::string label_;
 };
 

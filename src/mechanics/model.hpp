@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -42,6 +44,8 @@ struct Model {
   std::vector<std::array<bool, 3>> held;  // nodes; fixed directions x, y, z
   std::vector<Growth> growths;            // in progress, or finished since the last division
   double stiffness_scale = 1;             // Young's modulus, kPa, for load-independent tolerances
+  std::uint64_t revision = ++revisions;   // number of its own; another after a division
+  static inline std::atomic<std::uint64_t> revisions = 0;
 
   /// Make a model with held cell volumes and no laws.
   explicit Model(Tissue t);

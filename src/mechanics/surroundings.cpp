@@ -4,43 +4,24 @@
 
 namespace plica {
 
-namespace {
-
-std::vector<double> drag_coefficients(const Tissue& tissue, double drag) {
-  std::vector<double> coefficients(tissue.node_count(), 0.0);
-  for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets})
-    for (const Facet& facet : *facets) {
-      const double of_corner = drag * facet_area(rest_corners(tissue, facet)) / 4;
-      for (const NodeId node : facet.nodes) coefficients[node.index()] += of_corner;
-    }
-  return coefficients;
-}
-
-std::vector<double> lumped_masses(const Tissue& tissue, double density) {
-  std::vector<double> masses(tissue.node_count(), 0.0);
-  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
-    for (const NodeId node : tissue.elements[e])
-      masses[node.index()] += density * hex_volume(tissue.element_rest_shape[e]) / 8;
-  return masses;
-}
-
-}  // namespace
-
 SurfaceDrag::SurfaceDrag(const Tissue& tissue, double drag) : drag_(drag) {
-  coefficients_ = drag_coefficients(tissue, drag);
+  for (const auto* facets : {&tissue.apical_facets, &tissue.basal_facets}) add_areas(tissue, *facets, drag);
 }
 
 Inertia::Inertia(const Tissue& tissue, double density) : density_(density) {
-  coefficients_ = lumped_masses(tissue, density);
+  coefficients_.resize(tissue.node_count());
+  for (std::size_t e = 0; e < tissue.elements.size(); ++e)
+    for (const NodeId node : tissue.elements[e])
+      coefficients_[node.index()] += density * hex_volume(tissue.element_rest_shape[e]) / 8;
 }
 
-FacePressure::FacePressure(const Tissue& tissue, bool on_apical, CellPattern pattern, double pressure, Program program)
-    : on_apical_(on_apical),
+FacePressure::FacePressure(const Tissue& tissue, CellSide side, CellPattern pattern, double pressure, Program program)
+    : side_(side),
       pattern_(std::move(pattern)),
       pressure_(pressure),
       loads_(tissue.node_count(), Vec3::Zero()),
       program_(std::move(program)) {
-  for (const Facet& facet : on_apical ? tissue.apical_facets : tissue.basal_facets) {
+  for (const Facet& facet : tissue.facets(side)) {
     if (!pattern_.cells[facet.cell.index()]) continue;
     const double own = pressure * pattern_.strengths[facet.cell.index()];
     // The consistent load of a uniform pressure on a bilinear facet: integral of N_i n dA, 2 x 2 Gauss points.

@@ -11,7 +11,8 @@
 namespace plica {
 
 /// Law that resists displacements d of single nodes: energy sum r/2 |d|^2. `Self` has `dissipates`, remade(tissue) and
-/// resist(step, node, take), which calls take(node, r) for nodes that it resists; r, nN/um, is a number or a matrix.
+/// resist(step, node, take), which calls take(node, r) for nodes that it resists; r, nN/um, is a number or a matrix. It
+/// may hide `moved`, as Inertia does. `remade` has the tissue only, also after a division: keep a region by its name.
 template <class Self>
 class NodeLaw : public Law {
  public:
@@ -45,6 +46,15 @@ class NodeLaw : public Law {
   /// Return the displacement of a node, um.
   [[nodiscard]] Vec3 moved(const Step& step, std::size_t node) const {
     return step.positions[node] - step.before([node](std::span<const Vec3> x) { return x[node]; });
+  }
+
+  /// Add `factor` times the reference areas of facets, a quarter of each per corner.
+  void add_areas(const Tissue& tissue, std::span<const Facet> facets, double factor) {
+    coefficients_.resize(tissue.node_count());
+    for (const Facet& facet : facets) {
+      const double of_corner = factor * facet_area(rest_corners(tissue, facet)) / 4;
+      for (const NodeId node : facet.nodes) coefficients_[node.index()] += of_corner;
+    }
   }
 
   [[nodiscard]] double norm() const {
@@ -121,7 +131,7 @@ class Inertia final : public NodeLaw<Inertia> {
 class FacePressure final : public Law {
  public:
   /// Make the law with `pressure` in kPa, times the strengths of cells; delays are ignored.
-  FacePressure(const Tissue& tissue, bool on_apical, CellPattern pattern, double pressure, Program program);
+  FacePressure(const Tissue& tissue, CellSide side, CellPattern pattern, double pressure, Program program);
 
   [[nodiscard]] std::string_view name() const override { return "pressure"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<FacePressure>(*this); }
@@ -147,11 +157,11 @@ class FacePressure final : public Law {
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.jumps_s(); }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> /*positions*/) const override {
-    return std::make_unique<FacePressure>(tissue, on_apical_, pattern_.after_division(change), pressure_, program_);
+    return std::make_unique<FacePressure>(tissue, side_, pattern_.after_division(change), pressure_, program_);
   }
 
  private:
-  bool on_apical_;
+  CellSide side_;
   CellPattern pattern_;
   double pressure_;
   Vectors loads_;  // nodes; nN at activity 1

@@ -1,5 +1,5 @@
-// Tables whose cells act (elasticity.NAME, contraction.NAME, cortex.NAME, pressure.NAME): a view of each, and its
-// pattern on a tissue with resolved regions; per-cell and per-element inputs as arrays.
+// Tables that act on cells by strengths (elasticity.NAME, contraction.NAME, cortex.NAME, pressure.NAME): a view of
+// each, and its pattern on a tissue with resolved regions; per-cell and per-element inputs as arrays.
 #pragma once
 
 #include <string>
@@ -26,9 +26,9 @@ struct Acting {
   const ActingInput& input;
   std::string_view faces_key = {};  // faces, edges or face; empty: acts on whole cells
   bool can_be_ablated = false;
-  bool contracts = false;        // apical surfaces, where a furrow is measured by default
-  bool is_constant = false;      // a tension that does not depend on the deformation
-  bool has_sudden_onset = true;  // without a program
+  bool contracts = false;         // apical surfaces, where a furrow is measured by default
+  bool is_constant = false;       // a tension that does not depend on the deformation
+  bool has_sudden_onset = false;  // without its program
   std::vector<Force> forces = {};
 };
 

@@ -21,8 +21,7 @@ void check_faces(const Scenario& scenario, const Acting& acting, const Tissue& t
   const CellSide side = meaning_of(words::edges, acting.input.faces);
   if (acting.faces_key.empty() || side == CellSide::lateral) return;
   const CellSet& region = tissue.regions.at(acting.input.region);
-  const auto& facets = side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets;
-  if (std::ranges::none_of(facets, [&](const Facet& facet) { return region[facet.cell.index()]; }))
+  if (std::ranges::none_of(tissue.facets(side), [&](const Facet& facet) { return region[facet.cell.index()]; }))
     errors.push_back(diagnostic_at(
         scenario, acting.table + ".region",
         fmt::format("no cell of this region has {} {} face", side == CellSide::apical ? "an" : "a", acting.input.faces),
@@ -55,7 +54,7 @@ constexpr double least_um = 1, most_um = 100;
 bool is_of_a_cell(double size_um) { return size_um >= least_um && size_um <= most_um; }
 
 double median_width_um(const Tissue& tissue) {
-  std::vector<double> areas = apical_areas(tissue, tissue.rest_positions);
+  std::vector<double> areas = face_areas(tissue, CellSide::apical, tissue.rest_positions);
   std::erase(areas, 0.0);  // cells between two layers
   if (areas.empty()) return least_um;
   std::ranges::nth_element(areas, areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2));

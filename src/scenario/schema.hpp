@@ -80,12 +80,12 @@ struct ScenarioTable {
   std::function<void(Scenario&, Input&)> rules = {};
   /// Checks what depends on the tissue, whose regions are resolved.
   std::function<void(const Scenario&, const Tissue&, std::vector<Diagnostic>&)> check = {};
-  /// Adds laws, constraints and fixed nodes to a model.
+  /// Adds laws, constraints and fixed nodes to a model, in the order of tables: that of laws in sums and states.
   std::function<void(const Scenario&, const Origin&, Model&)> build = {};
   /// Names the nodes that it fixes; mirror planes require them, and regions of tables that act, to be symmetric.
   std::function<void(const Scenario&, const Tissue&, const TakeNodes&)> held_nodes = {};
   bool mirrored_regions = false;  // mirror planes require its regions to be symmetric, though it does not act
-  /// Lists the tables whose cells act.
+  /// Lists the tables that act on cells by strengths (CellPattern), passive ones too.
   std::function<void(const Scenario&, std::vector<Acting>&)> acting = {};
 
   [[nodiscard]] bool named() const { return path.ends_with(".*"); }

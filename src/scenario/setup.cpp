@@ -277,7 +277,7 @@ Monitor make_monitor(const std::string& name, const MonitorInput& input, const S
   monitor.quantity = quantity_named(input.quantity);
   monitor.region = input.region;
   monitor.from = input.from;
-  monitor.face = meaning_of(words::monitor_faces, input.face, monitor.face);
+  if (!input.face.empty()) monitor.face = meaning_of(words::surfaces, input.face);
   if (!input.axis.empty()) monitor.axis = meaning_of(words::axes, input.axis);
   monitor.over = meaning_of(words::overs, input.over, monitor.over);
   monitor.at_s = input.at_s;

@@ -129,7 +129,8 @@ inline constexpr auto shape_measures =
                                        {"apical_stretch", ShapeMeasure::apical_stretch}});
 
 // [pressure.NAME]: whether the face is apical.
-inline constexpr auto pressure_faces = std::to_array<Word<bool>>({{"apical", true}, {"basal", false}});
+inline constexpr auto surfaces =
+    std::to_array<Word<CellSide>>({{"apical", CellSide::apical}, {"basal", CellSide::basal}});
 
 // [enclosed.NAME]
 inline constexpr auto enclosed_states = std::to_array<Word<EnclosedState>>(
@@ -168,8 +169,6 @@ inline constexpr auto criterion_overs =
     std::to_array<Word<Criterion::Over>>({{"any", Criterion::Over::any}, {"all", Criterion::Over::all}});
 
 // [monitor.NAME]
-inline constexpr auto monitor_faces =
-    std::to_array<Word<Monitor::Face>>({{"apical", Monitor::Face::apical}, {"basal", Monitor::Face::basal}});
 inline constexpr auto overs = std::to_array<Word<Over>>(
     {{"mean", Over::mean}, {"max", Over::max}, {"min", Over::min}, {"sum", Over::sum}, {"rms", Over::rms}});
 inline constexpr auto reference_times = std::to_array<Word<Monitor::ReferenceAt>>(

@@ -140,7 +140,7 @@ CellCut cut_of_polygon(DivisionPlane plane, CellId id, const std::vector<Vec3>& 
 std::vector<double> measured(DivisionTrigger trigger, const Model& model, const State& state) {
   switch (trigger) {
     case DivisionTrigger::apical_area:
-      return apical_areas(model.tissue, state.positions);
+      return face_areas(model.tissue, CellSide::apical, state.positions);
     case DivisionTrigger::volume:
       return model.volumes.volumes(state.positions);
     case DivisionTrigger::elongation: {

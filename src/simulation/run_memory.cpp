@@ -1,8 +1,20 @@
 #include "simulation/run_memory.hpp"
 
+#include <fmt/format.h>
+
 #include "core/clock.hpp"
 
 namespace plica {
+namespace {
+
+// Activities that were set from outside follow the law's own numbers (GivenActivities).
+bool accepts(const Law& law, std::span<const double> internal, const Tissue& tissue) {
+  const std::size_t cells = tissue.cells.size();
+  return law.accepts(internal, tissue) ||
+         (law.is_active() && internal.size() >= cells && law.accepts(internal.first(internal.size() - cells), tissue));
+}
+
+}  // namespace
 
 bool has_ended(const RunMemory& run, const RunControls& controls) {
   return run.measures.is_over || (run.at_equilibrium && controls.stop_at_equilibrium) ||
@@ -24,9 +36,17 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
   if (state.positions.size() != nodes || state.velocities.size() != nodes || state.multipliers.size() != multipliers ||
       state.obstacle_forces.size() != contacts || state.on_obstacle.size() != contacts ||
       !none_or(state.trend.mean_velocities.size(), nodes) || !none_or(state.trend.accelerations.size(), nodes) ||
-      !none_or(state.trend.multiplier_rates.size(), multipliers) || state.internals.size() != model.laws.size() ||
+      !none_or(state.trend.multiplier_rates.size(), multipliers) ||
       !none_or(run.energies.size(), model.laws.size() + 1))
     return "its state does not fit this embryo";
+  return why_unfit(state.internals, model);
+}
+
+std::optional<std::string> why_unfit(std::span<const std::vector<double>> internals, const Model& model) {
+  if (internals.size() != model.laws.size()) return "its laws are not those of this embryo";
+  for (std::size_t l = 0; l < internals.size(); ++l)
+    if (!accepts(*model.laws[l], internals[l], model.tissue))
+      return fmt::format("its internal state of {} does not fit this law", model.laws[l]->label());
   return std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -41,8 +42,9 @@ struct UnfitMemory : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Check the memory against the model with its changes: sizes, numbers of nodes and cells. Returns the problem, or
-/// empty.
+/// Check the memory against the model with its changes: sizes, numbers of nodes and cells, internal states of laws.
+/// Returns the problem, or empty.
 std::optional<std::string> why_unfit(const RunMemory& run, const Model& model);
+std::optional<std::string> why_unfit(std::span<const std::vector<double>> internals, const Model& model);
 
 }  // namespace plica

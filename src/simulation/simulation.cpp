@@ -196,7 +196,7 @@ void Simulation::set_cell_array(const std::string& name, CellArray values) {
 }
 
 void Simulation::go_on_from(RunMemory memory) {
-  if (full_model_ ? memory.changes || memory.whole_internals.size() != full_model_->model().laws.size()
+  if (full_model_ ? memory.changes || why_unfit(memory.whole_internals, full_model_->model())
                   : !memory.whole_internals.empty())
     throw UnfitMemory("its mirror planes do not fit this embryo");
   const std::unique_ptr<Model> changed = changed_model(*model_, memory);

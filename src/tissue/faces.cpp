@@ -115,8 +115,7 @@ void spread(const Tissue& tissue, int step, int most, std::vector<int>& numbers)
 std::vector<Face> faces_of(const Tissue& tissue, CellSide side) {
   if (side == CellSide::lateral) return lateral_faces(tissue);
   std::vector<Face> faces;
-  for (const Facet& facet : side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets)
-    faces.push_back({facet.nodes, facet.cell, {}});
+  for (const Facet& facet : tissue.facets(side)) faces.push_back({facet.nodes, facet.cell, {}});
   return faces;
 }
 

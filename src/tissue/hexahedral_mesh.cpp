@@ -245,4 +245,8 @@ Tissue tissue_from_mesh(HexahedralMesh mesh, const MeshOptions& options) {
   return tissue;
 }
 
+Tissue read_mesh_file(const std::filesystem::path& file, const std::string& apical_array, const MeshOptions& options) {
+  return of_file(file, [&] { return tissue_from_mesh(read_vtk_hexahedra(file, apical_array), options); });
+}
+
 }  // namespace plica

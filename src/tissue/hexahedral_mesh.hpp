@@ -70,6 +70,9 @@ Tissue tissue_from_mesh(HexahedralMesh mesh, const MeshOptions& options);
 /// read or is another kind of file, MeshError if the mesh is unusable.
 Tissue read_mesh_file(const std::filesystem::path& file, const std::string& apical_array, const MeshOptions& options);
 
+// Readers chosen by read_mesh_file.
+HexahedralMesh read_vtk_hexahedra(const std::filesystem::path& file, const std::string& apical_array);
+
 /// Make the tissue of a mesh with groups whose hexahedra and points have been checked: grouped_mesh.cpp.
 Tissue tissue_from_groups(const HexahedralMesh& mesh);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,8 +15,8 @@
 
 namespace plica {
 
-/// Unusable mesh (a FileError). The text, which may have a format, names the cell and the problem, without the file
-/// name unless from read_mesh_file or read_frame.
+/// Unusable mesh (a FileError). The text, which may have a format, names the cell and the problem; the file name is
+/// added by readers of files (of_file).
 class MeshError : public FileError {
  public:
   using FileError::FileError;
@@ -23,6 +24,14 @@ class MeshError : public FileError {
   MeshError(fmt::format_string<Item, Items...> text, Item&& item, Items&&... items)
       : FileError(fmt::format(text, std::forward<Item>(item), std::forward<Items>(items)...)) {}
 };
+
+/// Return the result of `read`; a MeshError gets the name of the file.
+template <class Read>
+auto of_file(const std::filesystem::path& file, const Read& read) try {
+  return read();
+} catch (const MeshError& error) {
+  throw MeshError("{}: {}", file.string(), error.what());
+}
 
 struct HexahedralMesh;
 struct Tissue;

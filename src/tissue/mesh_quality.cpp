@@ -33,7 +33,7 @@ MeshQuality mesh_quality(const Tissue& tissue, const Vectors& positions) {
       lengths.push_back(length);
     }
   }
-  std::vector<double> areas = apical_areas(tissue, positions);
+  std::vector<double> areas = face_areas(tissue, CellSide::apical, positions);
   std::erase(areas, 0.0);  // of cells without an apical face
   MeshQuality quality{spread(volumes), spread(areas), spread(along), spread(across), spread(heights), 1, CellId(0)};
   for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
@@ -64,7 +64,7 @@ PolygonQuality polygon_quality(const Tissue& tissue, const Vectors& positions) {
   for (const auto& neighbours : wall_neighbours(tissue)) count(quality.neighbours, neighbours.size());
   quality.rim_cells = static_cast<std::size_t>(std::ranges::count(at_rim, true));
   quality.apical_edge_um = spread(edges);
-  quality.basal_area_um2 = spread(basal_areas(tissue, positions));
+  quality.basal_area_um2 = spread(face_areas(tissue, CellSide::basal, positions));
   return quality;
 }
 

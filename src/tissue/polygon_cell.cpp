@@ -262,7 +262,7 @@ std::vector<std::vector<ContractileLine>> contractile_lines(const Tissue& tissue
   }
   for (const Cell& cell : tissue.cells) lines.push_back(lines_of_face(cell, side));
   const std::vector<bool> is_inner = inner_nodes_of_polygons(tissue);
-  const std::span<const Facet> facets = side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets;
+  const std::span<const Facet> facets = tissue.facets(side);
   for (std::size_t begin = 0, end = 0; begin < facets.size(); begin = end) {
     const CellId cell = facets[begin].cell;
     bool has_inner = false;

@@ -49,6 +49,13 @@ double cell_volume(const Tissue& tissue, const Cell& cell, std::span<const Vec3>
   return volume;
 }
 
+double rest_volume(const Tissue& tissue, const Cell& cell) {
+  double volume = 0;
+  for (int e = 0; e < cell.element_count; ++e)
+    volume += hex_volume(tissue.element_rest_shape[cell.first_element.index() + e]);
+  return volume;
+}
+
 std::array<Vec3, 4> rest_corners(const Tissue& tissue, const Facet& facet) {
   const auto& nodes = tissue.elements[facet.element.index()];
   const HexPoints& rest = tissue.element_rest_shape[facet.element.index()];
@@ -63,27 +70,16 @@ Extent extent_along(const Tissue& tissue) {
   return extent;
 }
 
-namespace {
-
-template <class Corners>
-std::vector<double> areas(const Tissue& tissue, const std::vector<Facet>& facets, const Corners& corners) {
-  std::vector<double> result(tissue.cells.size(), 0.0);
-  for (const Facet& facet : facets) result[facet.cell.index()] += facet_area(corners(facet));
-  return result;
+std::vector<double> face_areas(const Tissue& tissue, CellSide side, std::span<const Vec3> positions) {
+  std::vector<double> areas(tissue.cells.size(), 0.0);
+  for (const Facet& facet : tissue.facets(side)) areas[facet.cell.index()] += facet_area(gather(positions, facet));
+  return areas;
 }
 
-}  // namespace
-
-std::vector<double> apical_areas(const Tissue& tissue, std::span<const Vec3> positions) {
-  return areas(tissue, tissue.apical_facets, [&](const Facet& facet) { return gather(positions, facet); });
-}
-
-std::vector<double> basal_areas(const Tissue& tissue, std::span<const Vec3> positions) {
-  return areas(tissue, tissue.basal_facets, [&](const Facet& facet) { return gather(positions, facet); });
-}
-
-std::vector<double> rest_apical_areas(const Tissue& tissue) {
-  return areas(tissue, tissue.apical_facets, [&](const Facet& facet) { return rest_corners(tissue, facet); });
+std::vector<double> rest_face_areas(const Tissue& tissue, CellSide side) {
+  std::vector<double> areas(tissue.cells.size(), 0.0);
+  for (const Facet& facet : tissue.facets(side)) areas[facet.cell.index()] += facet_area(rest_corners(tissue, facet));
+  return areas;
 }
 
 }  // namespace plica

@@ -144,6 +144,11 @@ struct Tissue {
   /// contains all of them.
   [[nodiscard]] double side_share(std::span<const NodeId> nodes) const;
 
+  /// Return the facets of the apical or basal surface.
+  [[nodiscard]] const std::vector<Facet>& facets(CellSide side) const {
+    return side == CellSide::apical ? apical_facets : basal_facets;
+  }
+
   [[nodiscard]] std::size_t node_count() const { return rest_positions.size(); }
   [[nodiscard]] std::size_t free_node_count() const { return rest_positions.size() - hanging.size(); }
 
@@ -202,14 +207,14 @@ Vec3 cell_centre(const Cell& cell, const Vectors& positions);
 /// Return the corners of the facet in the rest shape of its element, which changes only when daughters grow.
 std::array<Vec3, 4> rest_corners(const Tissue& tissue, const Facet& facet);
 
-/// Return the apical (basal) area of each cell, um^2; 0 for a cell without. Bilinear facets, 2 x 2 Gauss points.
-std::vector<double> apical_areas(const Tissue& tissue, std::span<const Vec3> positions);
-std::vector<double> basal_areas(const Tissue& tissue, std::span<const Vec3> positions);
-
-/// Return the apical areas of the rest shapes of cells, um^2.
-std::vector<double> rest_apical_areas(const Tissue& tissue);
+/// Return the apical or basal area of each cell, um^2, at these positions or of the rest shapes; 0 for a cell without.
+/// Bilinear facets, 2 x 2 Gauss points.
+std::vector<double> face_areas(const Tissue& tissue, CellSide side, std::span<const Vec3> positions);
+std::vector<double> rest_face_areas(const Tissue& tissue, CellSide side);
 
 /// Return the volume of a cell, um^3: the sum over its elements.
 double cell_volume(const Tissue& tissue, const Cell& cell, std::span<const Vec3> positions);
+/// Return that of the rest shapes of its elements.
+double rest_volume(const Tissue& tissue, const Cell& cell);
 
 }  // namespace plica

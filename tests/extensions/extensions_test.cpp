@@ -153,7 +153,7 @@ class WanderingSpring final : public Law {
     groups.add(nodes(internal));
     return groups;
   }
-  [[nodiscard]] int pattern_revision(std::span<const double> internal) const override {
+  [[nodiscard]] int groups_revision(std::span<const double> internal) const override {
     return static_cast<int>(internal[0]) / 4;
   }
   [[nodiscard]] std::vector<double> first_internal(const Tissue&) const override { return {0}; }
@@ -166,7 +166,7 @@ class WanderingSpring final : public Law {
  private:
   static constexpr double stiffness = 0.04;  // nN/um
   [[nodiscard]] std::array<NodeId, 2> nodes(std::span<const double> internal) const {
-    const auto n = static_cast<std::size_t>(7 * pattern_revision(internal));
+    const auto n = static_cast<std::size_t>(7 * groups_revision(internal));
     return {NodeId(n), NodeId(800 + n)};
   }
   [[nodiscard]] Vec3 stretch(const Step& step) const {

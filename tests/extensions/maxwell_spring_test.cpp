@@ -5,6 +5,7 @@
 //   L = (L_before + (rate_s/tau) l) / (1 + rate_s/tau),   tension = k (l - L_before) / (1 + rate_s/tau).
 // The internal state: L at the step's beginning, then L at the beginning of the step before, for steps of second order.
 #include "extensions/extension_checks.hpp"
+#include "mechanics/energy.hpp"
 
 namespace {
 
@@ -58,6 +59,9 @@ class MaxwellSprings final : public Law {
       tangent.add_block(NodeId(p.b), NodeId(p.b), block);
       tangent.add_block(NodeId(p.a), NodeId(p.b), -block);
     });
+  }
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override {
+    return relaxing_energy_flow(*this, completed);
   }
   [[nodiscard]] NodeGroups node_groups(std::span<const double>) const override {
     NodeGroups groups;
@@ -164,6 +168,11 @@ TEST(MaxwellSprings, DerivativesAgreeWithFiniteDifferences) {
   const MaxwellSprings law(tissue, 3, 0.5);
   check_derivatives(law, tissue, 2);
   check_semidefinite_tangent(MaxwellSprings(tissue, 3, 0.5, 1.5), tissue, 2, true);
+}
+
+TEST(MaxwellSprings, EnergyFlowIsTheWorkOfTheForces) {
+  const Tissue tissue = distorted_block(two_cells, 2, 3);
+  check_energy_flow(MaxwellSprings(tissue, 3, 2), tissue);
 }
 
 // One spring between two nodes that are held: tension decays as exp(-t/tau).

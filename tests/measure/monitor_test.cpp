@@ -71,7 +71,7 @@ TEST(Monitor, ReadsNodesOfItsRegionAndSide) {
   Monitor monitor = monitor_of("displacement");
   EXPECT_EQ(monitored_nodes(monitor, model.tissue).size(), 8U);
   const double bottom = model.tissue.rest_positions[model.tissue.cells[0].corners[0].index()].z();
-  for (const auto& [face, height] : {std::pair(Monitor::Face::apical, 40.0), {Monitor::Face::basal, 0.0}}) {
+  for (const auto& [face, height] : {std::pair(CellSide::apical, 40.0), {CellSide::basal, 0.0}}) {
     monitor.face = face;
     const auto nodes = monitored_nodes(monitor, model.tissue);
     ASSERT_EQ(nodes.size(), 4U);
@@ -122,7 +122,7 @@ TEST(Monitor, AreaOfEitherSide) {
     if (x.z() == top) x.y() *= 0.5;
   Monitor monitor = monitor_of("area", "all");
   EXPECT_NEAR(number(monitor, model, state), 200, 1e-10);
-  monitor.face = Monitor::Face::basal;
+  monitor.face = CellSide::basal;
   EXPECT_NEAR(number(monitor, model, state), 400, 1e-10);
   monitor.over = Over::sum;
   EXPECT_NEAR(number(monitor, model, state), 1200, 1e-10);
@@ -173,9 +173,9 @@ TEST(Monitor, ForceIsThatOfTheStandingBody) {
   State state = rest_state(model);
   for (Vec3& v : state.velocities) v = Vec3(1, 2, 3);
   Monitor monitor = monitor_of("force", "all");
-  monitor.face = Monitor::Face::apical;
+  monitor.face = CellSide::apical;
   EXPECT_NEAR(number(monitor, model, state), 40 * std::sqrt(2.0), 1e-9);
-  monitor.face = Monitor::Face::basal;
+  monitor.face = CellSide::basal;
   EXPECT_NEAR(number(monitor, model, state), 0, 1e-9);
   // Elasticity counts, too: stretched along z, the body pulls its top down. Contractions lie across.
   for (Vec3& x : state.positions) x.z() *= 1.1;
@@ -260,6 +260,36 @@ TEST(ForcesOfCells, OfPartsAddUpToThoseOfTheWhole) {
   model.volumes.add_forces(state.positions, state.multipliers, expected);
   model.tissue.carry_hanging(expected);
   for (std::size_t n = 0; n < of_all.size(); ++n) EXPECT_LE((of_all[n] - expected[n]).norm(), 1e-12 * largest(of_all));
+}
+
+// A monitor keeps the laws of its cells from step to step, but not over a division or for another model.
+TEST(ForcesOfCells, AreThoseOfThePresentModel) {
+  Model model(distorted_block({.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}}, 1, 3));
+  model.tissue.regions["left"] = CellSet(12, false);
+  model.tissue.regions["left"][0] = model.tissue.regions["left"][5] = true;
+  add_elasticity(model);
+  add_contraction(model, CellSet(12, true), {.stiffness = 2, .across_ratio = 0.4});
+  Random random(5);
+  State state = rest_state(model);
+  Monitor kept = monitor_of("force", "all");
+  kept.from = "left";
+  const auto expect_as_anew = [&](const Model& now) {
+    Monitor anew = monitor_of("force", "all");
+    anew.from = "left";
+    EXPECT_EQ(read_monitor(kept, {now, state}).values, read_monitor(anew, {now, state}).values);
+    EXPECT_TRUE(kept.apart->are_of(now));
+  };
+  for (int step = 0; step < 3; ++step) {
+    for (Vec3& x : state.positions) x += random.vector(0.5);
+    model.tissue.place_hanging(state.positions);
+    const CellsApart* before = kept.apart.get();
+    expect_as_anew(model);
+    EXPECT_EQ(kept.apart.get() == before, step == 1) << "kept from one step to the next, but not over the division";
+    if (step == 1) divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
+  }
+  const Model copy(model);
+  EXPECT_FALSE(kept.apart->are_of(copy));
+  expect_as_anew(copy);
 }
 
 Reading reading(std::vector<double> values) {

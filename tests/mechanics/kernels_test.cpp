@@ -36,7 +36,7 @@ class DenseCorotational final : public TurningElements {
   }
 
  private:
-  void fit(const Tissue& tissue, std::size_t e) {
+  void fit(const Tissue& tissue, std::size_t e) override {
     take_rest_shape(tissue, e);
     const HexPoints& rest = tissue.element_rest_shape[e];
     elements_[e].frame = mean_gradients(rest);

@@ -72,7 +72,7 @@ Mat3 stress_of(const std::vector<Spring>& springs, const Tissue& tissue, double 
 
 TEST_P(LawsOnPolygons, ATensionIsThatOfTheSheet) {
   const Tissue flat = tissue_from_prisms(honeycomb(4, 4, 8, 20), GetParam(), 1);
-  const std::vector<double> areas = apical_areas(flat, flat.rest_positions);
+  const std::vector<double> areas = face_areas(flat, CellSide::apical, flat.rest_positions);
   const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
   const auto of = [&](double across_ratio) {
     return stress_of(
@@ -182,7 +182,7 @@ TEST_P(LawsOnPolygons, ContactKnowsThem) {
   const SelfContact contact(tissue, {});
   double area = 0;
   for (const SelfContact::Point& point : contact.points()) area += point.area;
-  const std::vector<double> areas = apical_areas(tissue, tissue.rest_positions);
+  const std::vector<double> areas = face_areas(tissue, CellSide::apical, tissue.rest_positions);
   EXPECT_NEAR(area, std::accumulate(areas.begin(), areas.end(), 0.0), 1e-9 * area);
 }
 

@@ -77,21 +77,21 @@ TEST(Inertia, ForceIsMassTimesChangeOfVelocityOverTime) {
 
 TEST(FacePressure, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 4);
-  check_derivatives(FacePressure(tissue, true, CellSet{true, false}, 0.5, {}), tissue, 4);
+  check_derivatives(FacePressure(tissue, CellSide::apical, CellSet{true, false}, 0.5, {}), tissue, 4);
 }
 
 TEST(FacePressure, PushesIntoTheCellsWithPressureTimesArea) {
   const Tissue tissue = build_block(two_cells);
   const Motion rest = at_rest(tissue);
-  const FacePressure above(tissue, true, CellSet{true, true}, 0.5, {});
-  const FacePressure below(tissue, false, CellSet{true, true}, 0.5, {});
+  const FacePressure above(tissue, CellSide::apical, CellSet{true, true}, 0.5, {});
+  const FacePressure below(tissue, CellSide::basal, CellSet{true, true}, 0.5, {});
   EXPECT_LE((resultant(forces_of(above, rest.step())) - Vec3(0, 0, -400)).norm(), 1e-11);
   EXPECT_LE((resultant(forces_of(below, rest.step())) - Vec3(0, 0, 400)).norm(), 1e-11);
 }
 
 TEST(FacePressure, ActsOnChosenCellsAndFollowsItsProgram) {
   const Tissue tissue = build_block(two_cells);
-  const FacePressure law(tissue, true, CellSet{true, false}, 0.5, Program({0, 2}, {0, 1}));
+  const FacePressure law(tissue, CellSide::apical, CellSet{true, false}, 0.5, Program({0, 2}, {0, 1}));
   Motion rest = at_rest(tissue);
   rest.end_time_s = 0.5;
   const Vectors forces = forces_of(law, rest.step());
@@ -110,7 +110,7 @@ TEST(FacePressure, OnAClosedSurfaceHasNoResultantAndNoTorque) {
   Vectors positions = tissue.rest_positions;
   for (Vec3& x : positions) x += random.vector(2);
   const Tissue warped = with_rest_positions(tissue, positions);
-  const FacePressure law(warped, false, CellSet(warped.cells.size(), true), 0.01, {});
+  const FacePressure law(warped, CellSide::basal, CellSet(warped.cells.size(), true), 0.01, {});
   const Vectors forces = forces_of(law, at_rest(warped).step());
   EXPECT_LE(resultant(forces).norm(), 1e-11 * largest(forces));
   EXPECT_LE(torque(forces, positions).norm(), 1e-9 * largest(forces));

@@ -290,7 +290,33 @@ TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
   unfit([](RunMemory& m) { m.careful_steps = -1; });
   unfit([](RunMemory& m) { m.pace.since_s = m.state.time_s + 1; });
   unfit([](RunMemory& m) { m.pace.steps = -1; });
-  EXPECT_EQ(cases, 16);
+  unfit([](RunMemory& m) { m.state.internals.pop_back(); });
+  EXPECT_EQ(cases, 17);
+}
+
+// A law whose memory has another length in this version would read past its end.
+TEST_F(CheckpointTest, MemoryOfAnotherLengthIsNamed) {
+  Simulation simulation(
+      load_scenario(pulled_block("[cortex.skin]\nregion = \"all\"\nstiffness_mN_per_m = 1\nrelaxation_s = 9\n"
+                                 "[self_contact]\nsurface = \"apical\"\n"),
+                    {"elasticity.model=neo-hookean", "elasticity.relaxation_s=9"}));
+  simulation.run_until(1);
+  const Model& model = simulation.model();
+  const RunMemory good = simulation.memory();
+  EXPECT_FALSE(why_unfit(good, model));
+  int with_memory = 0;
+  for (std::size_t l = 0; l < model.laws.size(); ++l) {
+    RunMemory longer = good;
+    longer.state.internals[l].push_back(1);
+    with_memory += longer.state.internals[l].size() > 1;
+    EXPECT_SAYS(why_unfit(longer, model).value_or(""), model.laws[l]->label());
+    EXPECT_THROW(simulation.go_on_from(longer), UnfitMemory);
+  }
+  EXPECT_GE(with_memory, 2);
+  RunMemory given = good;
+  for (std::size_t l = 0; l < model.laws.size(); ++l)
+    if (model.laws[l]->is_active()) given.state.internals[l].resize(model.tissue.cells.size(), 1);
+  EXPECT_FALSE(why_unfit(given, model)) << "an activity a cell";
 }
 
 // Sizes and indices, each of which the model would be made with.

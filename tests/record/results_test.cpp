@@ -351,7 +351,8 @@ TEST(SurfaceMesh, OfDividedCellsHasNoGaps) {
       return !edges.contains({edge.second, edge.first});
     });
     EXPECT_EQ(lonely, static_cast<long>(rim_of(tissue, apical ? tissue.apical_facets : tissue.basal_facets).size()));
-    const std::vector<double> of_cells = apical ? apical_areas(tissue, positions) : basal_areas(tissue, positions);
+    const std::vector<double> of_cells =
+        apical ? face_areas(tissue, CellSide::apical, positions) : face_areas(tissue, CellSide::basal, positions);
     for (std::size_t c = 0; c < areas.size(); ++c) EXPECT_NEAR(areas[c], of_cells[c], 1e-9 * of_cells[c]) << c;
   }
 }

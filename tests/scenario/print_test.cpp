@@ -245,7 +245,7 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("enclosed.*", "volume", words::enclosed_states);
   expect_words("self_contact", "surface", words::contact_surfaces);
   expect_words("hold.*", "directions", words::axes);
-  expect_words("pressure.*", "face", words::pressure_faces);
+  expect_words("pressure.*", "face", words::surfaces);
   expect_words("ablation.*", "faces", words::edges);
   expect_words("division.*", "when", words::division_triggers);
   expect_words("division.*", "plane", words::division_planes);
@@ -254,7 +254,7 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("time", "linear_solver", words::linear_solvers);
   expect_words("stop", "combine", words::combinations);
   expect_words("stop.*", "over", words::criterion_overs);
-  expect_words("monitor.*", "face", words::monitor_faces);
+  expect_words("monitor.*", "face", words::surfaces);
   expect_words("monitor.*", "axis", words::axes);
   expect_words("monitor.*", "over", words::overs);
   expect_words("monitor.*", "reference_at", words::reference_times);

@@ -302,7 +302,7 @@ TEST(MeasurePlan, MakesMonitorsAndCriteriaOfAScenario) {
   EXPECT_EQ(plan.monitors[1].column(), "floor.position_um");
   EXPECT_EQ(plan.monitors[1].axis, 2);
   EXPECT_EQ(plan.monitors[1].over, Over::max);
-  EXPECT_EQ(plan.monitors[1].face, Monitor::Face::apical);
+  EXPECT_EQ(plan.monitors[1].face, CellSide::apical);
   EXPECT_TRUE(plan.stop.all);
   EXPECT_FALSE(plan.stop.needs_rest);
   ASSERT_EQ(plan.stop.criteria.size(), 2U);

@@ -1,9 +1,57 @@
 #include "support/law_checks.hpp"
 
+#include "mechanics/energy.hpp"
+
 namespace plica::support {
 namespace {
 
 Eigen::Index size_of(const Step& step) { return 3 * static_cast<Eigen::Index>(step.positions.size()); }
+
+// The work of a law's forces on a straight way of length `size` that takes `size` seconds, by the forces midway, and
+// what the law says of it. Midway, what flows has flown for half of the time.
+struct Work {
+  double of_forces, told;
+};
+
+Work work_over(const Law& law, const Tissue& tissue, double size) {
+  Model model(tissue);
+  model.laws.push_back(law.clone());
+  State before = rest_state(model);
+  before.time_s = 1;
+  Random random(5);
+  for (Vec3& x : before.positions) x += random.vector(1.5);
+  State after = before;
+  after.time_s += size;
+  for (Vec3& x : after.positions) x += size * random.vector(2);
+
+  Vectors middle = before.positions;
+  for (std::size_t n = 0; n < middle.size(); ++n) middle[n] = 0.5 * (before.positions[n] + after.positions[n]);
+  Step step;
+  step.positions = middle;
+  step.previous_positions = before.positions;
+  step.previous_velocities = before.velocities;
+  step.rate_s = 0.5 * size;
+  step.end_time_s = 1 + 0.5 * size;
+  step.internal = before.internals.front();
+  if (step.internal.empty()) {
+    // Rates are the mean ones of the whole way: (q - q_before)/rate with so large an `ahead` that the way from the
+    // beginning to the end is all that counts.
+    step.earlier_positions = after.positions;
+    step.ahead = 1e6;
+    step.rate_s = (0.5 + step.ahead) * size;
+  }
+  const Vectors forces = forces_of(law, step);
+  double work = 0;
+  for (std::size_t n = 0; n < forces.size(); ++n) work += forces[n].dot(after.positions[n] - before.positions[n]);
+
+  step.positions = after.positions;
+  step.ahead = 0;
+  step.rate_s = size;
+  step.end_time_s = after.time_s;
+  after.internals.front() = law.next_internal(step);
+  const EnergyFlow flow = energy_flows(model, before, after).front();
+  return {work, flow.active - flow.stored - flow.dissipated};
+}
 
 }  // namespace
 
@@ -110,6 +158,14 @@ void check_semidefinite_tangent(const Law& law, const Tissue& tissue, double siz
               std::string(law.name()).c_str(), exact_worst, worst, cases);
   EXPECT_GE(worst, -1e-12) << law.name();
   EXPECT_EQ(exact_worst < -1e-6, exact_is_indefinite) << law.name();
+}
+
+void check_energy_flow(const Law& law, const Tissue& tissue) {
+  const Work coarse = work_over(law, tissue, 0.1), fine = work_over(law, tissue, 0.05);
+  const double error = coarse.told - coarse.of_forces, finer = fine.told - fine.of_forces;
+  EXPECT_GT(std::abs(coarse.of_forces), 1e-3) << law.name();
+  EXPECT_LE(std::abs(error), 0.05 * std::abs(coarse.of_forces)) << law.name();
+  EXPECT_LE(std::abs(finer), std::abs(error) / 6 + 1e-12 * std::abs(fine.of_forces)) << law.name();
 }
 
 Vec3 resultant(const Vectors& forces) {

@@ -35,6 +35,10 @@ void check_derivatives(const Law& law, const Tissue& tissue, double size_um, int
 void check_semidefinite_tangent(const Law& law, const Tissue& tissue, double size_um, bool exact_is_indefinite,
                                 int cases = 5);
 
+/// The law's energy flow over a short step is the work of its forces, which are right to second order both, so they
+/// differ by the third power of the size of the step.
+void check_energy_flow(const Law& law, const Tissue& tissue);
+
 /// The resultant of forces, and their torque about the origin.
 Vec3 resultant(const Vectors& forces);
 Vec3 torque(const Vectors& forces, std::span<const Vec3> positions);

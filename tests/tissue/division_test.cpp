@@ -312,7 +312,7 @@ TEST(PolygonDivision, OfAHexagonGivesTwoPentagonsAndStopsInItsNeighbours) {
       stops += static_cast<int>(tissue.sheet.cells[c].ring.size()) - 6;
     }
   EXPECT_EQ(stops, 2);
-  const std::vector<double> areas = apical_areas(tissue, tissue.rest_positions);
+  const std::vector<double> areas = face_areas(tissue, CellSide::apical, tissue.rest_positions);
   EXPECT_NEAR(areas[middle], areas[9], 1e-9);
 }
 

@@ -198,7 +198,7 @@ TEST(Rows, OfPolygonsAreCellsThatOnePasses) {
   const auto neighbours = wall_neighbours(egg);
   double width = 0, area = 0;
   int counted = 0;
-  const std::vector<double> areas = apical_areas(egg, egg.rest_positions);
+  const std::vector<double> areas = face_areas(egg, CellSide::apical, egg.rest_positions);
   for (std::size_t c = 0; c < egg.cells.size(); ++c) {
     ASSERT_GE(found[c], 0);
     int nearest = found[c];
@@ -270,8 +270,9 @@ TEST(Mirror, OneSideIsAHalfOrAQuarter) {
       EXPECT_EQ(side.tissue.elements.size() * times, whole.elements.size());
       EXPECT_EQ(side.tissue.apical_facets.size() * times, whole.apical_facets.size());
       EXPECT_NEAR(sum_of_volumes(side.tissue) * times, sum_of_volumes(whole), 1e-12 * sum_of_volumes(whole));
-      const double area = sum(apical_areas(whole, whole.rest_positions));
-      EXPECT_NEAR(sum(apical_areas(side.tissue, side.tissue.rest_positions)) * times, area, 1e-12 * area);
+      const double area = sum(face_areas(whole, CellSide::apical, whole.rest_positions));
+      EXPECT_NEAR(sum(face_areas(side.tissue, CellSide::apical, side.tissue.rest_positions)) * times, area,
+                  1e-12 * area);
       double copies = 0;  // of nodes
       for (std::size_t n = 0; n < side.tissue.node_count(); ++n) {
         const NodeId node(n);

@@ -260,7 +260,7 @@ TEST_P(Prisms, FillTheirPolygons) {
   const Tissue tissue = of(sheet);
   ASSERT_EQ(tissue.cells.size(), sheet.cells.size());
   std::map<std::size_t, int> of_sides;
-  const std::vector<double> areas = apical_areas(tissue, tissue.rest_positions);
+  const std::vector<double> areas = face_areas(tissue, CellSide::apical, tissue.rest_positions);
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     const Cell& cell = tissue.cells[c];
     ++of_sides[cell.sides()];

@@ -190,7 +190,7 @@ double bending_over_exact(const PrismSheet& sheet, PolygonSplit split, double po
   const Vectors u = statics.solve(), forces = statics.reactions(u);
   double energy = 0, area = 0;
   for (std::size_t n = 0; n < tissue.free_node_count(); ++n) energy += 0.5 * u[n].dot(forces[n]);
-  for (const double of_cell : apical_areas(tissue, tissue.rest_positions)) area += of_cell;
+  for (const double of_cell : face_areas(tissue, CellSide::apical, tissue.rest_positions)) area += of_cell;
   const double plate = young / (1 - poisson * poisson) * height * height * height / 12;
   return energy / (0.5 * plate * curvature * curvature * area);
 }
@@ -229,7 +229,7 @@ Radial solve_sphere(std::array<int, 3> cells, int elements, double poisson) {
   const Tissue tissue =
       build_shell({.length_um = 2 * outer, .cells = cells, .elements_per_cell = {elements, elements, elements}});
   LinearStatics statics(tissue, ElasticModuli::from_young(young, poisson));
-  const FacePressure load(tissue, false, CellSet(tissue.cells.size(), true), pressure, {});
+  const FacePressure load(tissue, CellSide::basal, CellSet(tissue.cells.size(), true), pressure, {});
   const Motion rest = at_rest(tissue);
   statics.add_loads(forces_of(load, rest.step()));
   // The load balances itself, so six displacements held take no force; what rigid motion they leave has no mean radial

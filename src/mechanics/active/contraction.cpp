@@ -28,21 +28,17 @@ Mat3 turning_stiffness(const Segment& s) {
 }
 
 // Area at rest of each cell's apical or basal face, or of its walls together, um^2.
-std::vector<double> rest_face_areas(const Tissue& tissue, CellSide side) {
+std::vector<double> areas_at_rest(const Tissue& tissue, CellSide side) {
+  if (side != CellSide::lateral) return rest_face_areas(tissue, side);
   std::vector<double> areas(tissue.cells.size(), 0.0);
-  if (side == CellSide::lateral) {
-    for (std::size_t c = 0; c < areas.size(); ++c)
-      for (std::size_t i = 0, sides = tissue.cells[c].sides(); i < sides; ++i) {
-        const auto at = [&](std::size_t corner) {
-          return tissue.rest_positions[tissue.cells[c].corners[corner].index()];
-        };
-        const std::size_t next = (i + 1) % sides;
-        areas[c] += facet_area({at(i), at(next), at(sides + next), at(sides + i)});
-      }
-    return areas;
-  }
-  for (const Facet& facet : side == CellSide::apical ? tissue.apical_facets : tissue.basal_facets)
-    areas[facet.cell.index()] += facet_area(rest_corners(tissue, facet));
+  for (std::size_t c = 0; c < areas.size(); ++c)
+    for (std::size_t i = 0, sides = tissue.cells[c].sides(); i < sides; ++i) {
+      const auto at = [&](std::size_t corner) {
+        return tissue.rest_positions[tissue.cells[c].corners[corner].index()];
+      };
+      const std::size_t next = (i + 1) % sides;
+      areas[c] += facet_area({at(i), at(next), at(sides + next), at(sides + i)});
+    }
   return areas;
 }
 
@@ -82,7 +78,7 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
       springs.push_back(std::move(spring));
     }
   };
-  const std::vector<double> areas = rest_face_areas(tissue, rule.side);
+  const std::vector<double> areas = areas_at_rest(tissue, rule.side);
   const auto lines = contractile_lines(tissue, rule.side);
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     if (!pattern.cells[c]) continue;

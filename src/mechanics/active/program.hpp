@@ -16,8 +16,6 @@ class Program {
   [[nodiscard]] double at(double time_s) const;
   /// Return the activity with a delay of `delay_s`; 0 before time 0 of the program.
   [[nodiscard]] double delayed_at(double delay_s, double time_s) const;
-  /// Return the time of the last point, s; the activity is constant from there on.
-  [[nodiscard]] double end_s() const { return times_.empty() ? 0 : times_.back(); }
   [[nodiscard]] const std::vector<double>& times_s() const { return times_; }
   [[nodiscard]] std::vector<double> jumps_s() const;
 

@@ -47,8 +47,9 @@ ShapeActivation::ShapeActivation(const Tissue& tissue, const ShapeActivationRule
     std::ranges::fill(at_rest_, 1.0);
     return;
   }
-  facets_ = rule.measure == ShapeMeasure::apical_area_ratio ? tissue.apical_facets : tissue.basal_facets;
-  for (const Facet& facet : facets_) at_rest_[facet.cell.index()] += facet_area(rest_corners(tissue, facet));
+  const CellSide side = rule.measure == ShapeMeasure::apical_area_ratio ? CellSide::apical : CellSide::basal;
+  facets_ = tissue.facets(side);
+  at_rest_ = rest_face_areas(tissue, side);
 }
 
 std::vector<double> ShapeActivation::sizes(std::span<const Vec3> x) const {

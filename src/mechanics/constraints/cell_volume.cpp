@@ -212,10 +212,7 @@ void Dilatation::take_target_volumes(const Tissue& tissue) {
   if (!cells_are_exact_) return;
   for (const Cell& cell : tissue.cells) {
     if (!cell.target_volume) continue;
-    double at_rest = 0;
-    for (int e = 0; e < cell.element_count; ++e)
-      at_rest += hex_volume(tissue.element_rest_shape[cell.first_element.index() + e]);
-    const double part = *cell.target_volume / at_rest;
+    const double part = *cell.target_volume / rest_volume(tissue, cell);
     for (int e = 0; e < cell.element_count; ++e) {
       const std::size_t element = cell.first_element.index() + e;
       const double rest = hex_volume(tissue.element_rest_shape[element]);

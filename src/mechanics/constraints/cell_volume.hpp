@@ -99,7 +99,7 @@ class Dilatation final : public BatchLaw<Dilatation, 8> {
  private:
   friend BatchLaw;
   static constexpr std::array tables = {&generic::volume_kernels, &avx2::volume_kernels, &avx512::volume_kernels};
-  void fit(const Tissue& tissue, std::size_t place);
+  void fit(const Tissue& tissue, std::size_t place) override;
   void take_target_volumes(const Tissue& tissue);
   [[nodiscard]] VolumeArrays kernel_arrays(const Step& step) const;
 

@@ -50,7 +50,7 @@ SelfContact::SelfContact(const Tissue& whole, const SelfContactRule& rule, Mirro
   std::map<NodeId, std::vector<std::size_t>> of_node;
   std::map<NodeId, double> area_of_node;
   std::vector<double> areas;  // 0 of images, whose points are not this side's
-  for (const Facet& facet : rule.side == CellSide::apical ? whole.apical_facets : whole.basal_facets) {
+  for (const Facet& facet : whole.facets(rule.side)) {
     const bool is_own = mirror_.original(facet.cell) == facet.cell;
     areas.push_back(is_own ? facet_area(rest_corners(whole, facet)) : 0);
     for (const NodeId node : facet.nodes) {
@@ -256,7 +256,7 @@ std::span<const Pair> SelfContact::pairs_of(std::span<const double> internal) {
 
 // An internal state is the revision of the pattern, then the numbers of pairs.
 std::vector<double> SelfContact::packed(const std::vector<Pair>& pairs, std::span<const double> before) const {
-  std::vector<double> numbers = {static_cast<double>(pattern_revision(before))};
+  std::vector<double> numbers = {static_cast<double>(groups_revision(before))};
   const auto* of_pairs = reinterpret_cast<const double*>(pairs.data());
   numbers.insert(numbers.end(), of_pairs, of_pairs + numbers_of_pair * pairs.size());
   NodeGroups joined, joined_before;

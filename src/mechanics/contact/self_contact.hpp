@@ -53,7 +53,7 @@ class SelfContact final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] double rounding(const Step& step, double position_rounding) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
-  [[nodiscard]] int pattern_revision(std::span<const double> internal) const override {
+  [[nodiscard]] int groups_revision(std::span<const double> internal) const override {
     return internal.empty() ? 0 : static_cast<int>(internal.front());
   }
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override {
@@ -61,6 +61,9 @@ class SelfContact final : public Law {
   }
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override {
     return packed(pairs(step.positions, step.internal), step.internal);
+  }
+  [[nodiscard]] bool accepts(std::span<const double> internal, const Tissue& /*tissue*/) const override {
+    return internal.empty() || internal.size() % numbers_of_pair == 1;
   }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;

@@ -44,12 +44,6 @@ void CornerBarrier::fit(const Tissue& tissue, std::size_t e) {
     scales_[e][corner] = handedness[corner] / (8 * threshold_ * jacobians[corner]);
 }
 
-std::unique_ptr<Law> CornerBarrier::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
-  auto law = std::make_unique<CornerBarrier>(*this);
-  for (const ElementId e : elements) law->fit(tissue, e.index());
-  return law;
-}
-
 // The energy as a function of r, and r as one of the nodes: that of the corner, then its three neighbours.
 struct CornerBarrier::Corner {
   std::array<NodeId, 4> nodes;

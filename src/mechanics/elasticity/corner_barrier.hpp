@@ -28,13 +28,12 @@ class CornerBarrier final : public Law {
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
-  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 
  private:
   struct Corner;  // corner below the threshold, at given positions
   template <class Take>
   void for_pushed(std::span<const Vec3> positions, std::size_t element, const Take& take) const;
-  void fit(const Tissue& tissue, std::size_t element);
+  void fit(const Tissue& tissue, std::size_t element) override;
 
   double modulus_, threshold_;
   ElementChunks chunks_;

@@ -38,7 +38,7 @@ class Corotational final : public BatchLaw<Corotational, 8> {
   friend BatchLaw;
   static constexpr std::array tables = {&generic::corotational_kernels, &avx2::corotational_kernels,
                                         &avx512::corotational_kernels};
-  void fit(const Tissue& tissue, std::size_t element);  // computes element data from the rest shape
+  void fit(const Tissue& tissue, std::size_t element) override;
 
   ElementValues<ElasticModuli> moduli_;
   double shear_viscosity_;

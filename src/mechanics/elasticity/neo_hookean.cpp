@@ -8,6 +8,7 @@
 
 #include "core/parallel.hpp"
 #include "mechanics/elasticity/turning_elements.hpp"
+#include "mechanics/energy.hpp"
 #include "tissue/tissue_change.hpp"
 
 namespace plica {
@@ -139,17 +140,8 @@ double NeoHookean::energy(const Step& step) const {
   });
 }
 
-// Work not stored in the relaxed rest shapes is dissipated.
 EnergyFlow NeoHookean::energy_flow(const CompletedStep& completed) const {
-  EnergyFlow flow = Law::energy_flow(completed);
-  if (!flows_) return flow;
-  Vectors mean(completed.end.positions.size(), Vec3::Zero());
-  add_forces(completed.begin, mean);
-  add_forces(completed.end, mean);
-  for (std::size_t n = 0; n < mean.size(); ++n)
-    flow.dissipated -= 0.5 * mean[n].dot(completed.end.positions[n] - completed.begin.positions[n]);
-  flow.dissipated -= flow.stored;
-  return flow;
+  return flows_ ? relaxing_energy_flow(*this, completed) : Law::energy_flow(completed);
 }
 
 std::vector<double> NeoHookean::first_internal(const Tissue& /*tissue*/) const {

@@ -49,7 +49,7 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8> {
   friend BatchLaw;
   static constexpr std::array tables = {&generic::neo_hookean_kernels, &avx2::neo_hookean_kernels,
                                         &avx512::neo_hookean_kernels};
-  void fit(const Tissue& tissue, std::size_t element);  // computes element data from the rest shape
+  void fit(const Tissue& tissue, std::size_t element) override;
   // An internal state: batches at the beginning of this step, and of the previous step.
   struct Memory {
     std::span<const FlowedBatch> now, earlier;

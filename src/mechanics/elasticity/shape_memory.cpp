@@ -27,14 +27,6 @@ Vec24 without_mean(const Vec24& vectors) {
   return result;
 }
 
-double rest_volume(const Tissue& tissue, CellId id) {
-  const Cell& cell = tissue.cells[id.index()];
-  double volume = 0;
-  for (int e = 0; e < cell.element_count; ++e)
-    volume += hex_volume(tissue.element_rest_shape[cell.first_element.index() + e]);
-  return volume;
-}
-
 }  // namespace
 
 AttractorModuli attractor_moduli(const HexPoints& rest, double stiffness) {
@@ -67,7 +59,7 @@ void ShapeMemory::fit(const Tissue& tissue, std::size_t e) {
   const double scale = std::cbrt(spread(rest).determinant());
   for (int i = 0; i < 8; ++i) element.frame[i] = element.rest[i] / scale;
   if (shear_viscosity_ > 0) element.viscosity = incompatible_stiffness(rest, viscous_moduli(shear_viscosity_));
-  const double share = std::cbrt(hex_volume(rest) / rest_volume(tissue, tissue.element_cell[e]));
+  const double share = std::cbrt(hex_volume(rest) / rest_volume(tissue, tissue.cells[tissue.element_cell[e].index()]));
   stiffness_[e] = springs_.stiffness > 0 ? springs_.stiffness * share
                                          : springs_.shear_modulus / attractor_moduli(rest, 1).mean_shear();
   preload_[e] = springs_.preload * share * share;
@@ -76,12 +68,6 @@ void ShapeMemory::fit(const Tissue& tissue, std::size_t e) {
 std::unique_ptr<Law> ShapeMemory::after_division(const Tissue& tissue, const TissueChange&,
                                                  std::span<const Vec3>) const {
   return std::make_unique<ShapeMemory>(tissue, springs_, shear_viscosity_);
-}
-
-std::unique_ptr<Law> ShapeMemory::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
-  auto law = std::make_unique<ShapeMemory>(*this);
-  for (const ElementId e : elements) law->fit(tissue, e.index());
-  return law;
 }
 
 // E = sum k |u_i|^2 / 2 + P (s_i - e). The attractor's centre is the nodes' mean, so a node that moves takes an eighth

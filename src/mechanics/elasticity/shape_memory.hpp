@@ -40,7 +40,6 @@ class ShapeMemory final : public TurningElements {
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<ShapeMemory>(*this); }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
-  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
 
   /// Return k of each element, nN/um.
   [[nodiscard]] const std::vector<double>& stiffness() const { return stiffness_; }
@@ -50,7 +49,7 @@ class ShapeMemory final : public TurningElements {
   const Mat24& local_stiffness(std::size_t element, const Vec24& u, Mat24& space) const override;
 
  private:
-  void fit(const Tissue& tissue, std::size_t element);  // computes element data from the rest shape
+  void fit(const Tissue& tissue, std::size_t element) override;
 
   AttractorSprings springs_;
   double shear_viscosity_;

@@ -1,5 +1,5 @@
-// Base of the elastic laws: a frame that rotates with each element, and the transformation of forces and tangents in
-// that frame. Derivation: docs/theory/corotational.md, Frame, Force and Tangent.
+// Base of ShapeMemory and of laws in tests: a frame that rotates with each element, and the transformation of forces
+// and tangents in that frame. Derivation: docs/theory/corotational.md, Frame, Force and Tangent.
 //
 // A law gives its element eight frame vectors b_i; the frame is the rotation R nearest to sum_i x_i b_i^T = R S. In it
 // the local displacement is u_i = R^T (x_i - c) - (X_i - C), and the law is an energy of u. R is differentiated too:

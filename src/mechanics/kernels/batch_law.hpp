@@ -59,12 +59,6 @@ class BatchLaw : public Law {
     for (const Nodes& nodes : elements_) groups.add(nodes);
     return groups;
   }
-  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override {
-    auto law = std::make_unique<Self>(self());
-    if constexpr (requires { law->fit(tissue, 0); })
-      for (const ElementId e : elements) law->fit(tissue, e.index());
-    return law;
-  }
 
  protected:
   BatchLaw(std::vector<Nodes> elements, ElementChunks chunks, Kernels kernels)

@@ -51,7 +51,7 @@ void describe(const C& input, const Scenario& scenario, Acting& acting) {
   // Lateral edges are long and pull on the small area of a cell.
   const double shape = input.faces == "lateral" ? 0.01 : 1;
   acting.faces_key = "edges";
-  acting.can_be_ablated = acting.contracts = true;
+  acting.can_be_ablated = acting.contracts = acting.has_sudden_onset = true;
   // A tension that falls with the length on which it acts ends softly by itself.
   acting.is_constant = input.faces != "lateral" && input.stiffness_nN_per_um == 0 &&
                        (input.tension_mN_per_m > 0 || input.preload_nN > 0);

@@ -175,8 +175,6 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
     model.laws.push_back(std::make_unique<CornerBarrier>(model.tissue, barrier_Pa * units::pascal));
 }
 
-void describe(const R&, const Scenario&, Acting& acting) { acting.has_sudden_onset = false; }
-
 }  // namespace
 
 std::vector<ElasticMaterial> elastic_materials(const Scenario& scenario, const Origin& origin, const Tissue& tissue) {
@@ -252,7 +250,7 @@ ScenarioTable region_elasticity_table() {
   };
   add_strengths(info.rows, acting(row));
   info.check = check_regions;
-  list_acting(info, &Scenario::region_elasticities, describe, check_region_elasticity);
+  list_acting(info, &Scenario::region_elasticities, nullptr, check_region_elasticity);
   return info;
 }
 

@@ -140,7 +140,7 @@ ScenarioTable monitor_table() {
   info.rows = {
       row("quantity", &M::quantity, one_of(quantity_names()), "Recorded quantity.", {.required = true}),
       row("region", &M::region, anything, "Cells measured."),
-      row("face", &M::face, one_of(words::monitor_faces),
+      row("face", &M::face, one_of(words::surfaces),
           "Nodes of this side only; default all. For areas: the face, default apical."),
       row("axis", &M::axis, one_of(words::axes), "Component; default the norm."),
       row("from", &M::from, anything,

@@ -9,7 +9,7 @@ using P = PressureInput;
 
 void build(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.pressures) {
-    model.laws.push_back(std::make_unique<FacePressure>(model.tissue, meaning_of(words::pressure_faces, input.faces),
+    model.laws.push_back(std::make_unique<FacePressure>(model.tissue, meaning_of(words::surfaces, input.faces),
                                                         make_pattern(input, origin), input.pressure_Pa * units::pascal,
                                                         make_program(input.program)));
     model.laws.back()->set_label("pressure." + name);
@@ -18,6 +18,7 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
 
 void describe(const P& input, const Scenario& scenario, Acting& acting) {
   acting.faces_key = "face";
+  acting.has_sudden_onset = true;
   acting.forces = {{"pressure_Pa", input.pressure_Pa, scenario.elasticity.young_modulus_Pa}};
 }
 
@@ -28,7 +29,7 @@ ScenarioTable pressure_table() {
   const auto row = key_rows(info, &Scenario::pressures);
   info.rows = {
       row("region", &P::region, anything, "Cells whose faces carry the pressure.", {.required = true}),
-      row("face", &P::faces, one_of(words::pressure_faces), "Loaded face."),
+      row("face", &P::faces, one_of(words::surfaces), "Loaded face."),
       row("pressure_Pa", &P::pressure_Pa, anything, "Pressure into the cell (Pa); dead load on the reference face.",
           {.required = true}),
   };

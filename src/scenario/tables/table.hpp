@@ -152,14 +152,15 @@ void check_each(ScenarioTable& info, Named<Table> tables,
 }
 
 /// Lists the tables of one kind that act, and checks what all that act have, then what `check` adds for the kind.
-/// `describe` fills what depends on the kind.
+/// `describe` fills what depends on the kind; null: nothing.
 template <class Table>
-void list_acting(ScenarioTable& info, Named<Table> tables, void (*describe)(const Table&, const Scenario&, Acting&),
+void list_acting(ScenarioTable& info, Named<Table> tables,
+                 std::type_identity_t<void (*)(const Table&, const Scenario&, Acting&)> describe,
                  void (*check)(const std::string& path, Table&, const Scenario&, Input&) = nullptr) {
   info.acting = [=, stem = info.stem()](const Scenario& scenario, std::vector<Acting>& all) {
     for (const auto& [name, table] : scenario.*tables) {
       all.push_back({fmt::format("{}.{}", stem, name), table});
-      describe(table, scenario, all.back());
+      if (describe) describe(table, scenario, all.back());
     }
   };
   info.rules = [=, stem = info.stem()](Scenario& scenario, Input& input) {

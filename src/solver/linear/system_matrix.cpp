@@ -53,16 +53,16 @@ BlockPattern pattern_of(const Model& model, const Step& step, const ConstraintJa
 
 }  // namespace
 
-std::vector<int> pattern_revisions(const Model& model, const Step& step) {
+std::vector<int> groups_revisions(const Model& model, const Step& step) {
   std::vector<int> revisions;
   for_laws(model, step,
-           [&](const Law& law, const Step& law_step) { revisions.push_back(law.pattern_revision(law_step.internal)); });
+           [&](const Law& law, const Step& law_step) { revisions.push_back(law.groups_revision(law_step.internal)); });
   return revisions;
 }
 
 SystemMatrix::SystemMatrix(const Model& model, const Step& step, bool is_regularised)
     : tissue_(model.tissue),
-      revisions_(pattern_revisions(model, step)),
+      revisions_(groups_revisions(model, step)),
       jacobian_(model),
       layout_(pattern_of(model, step, is_regularised ? &jacobian_ : nullptr)),
       blocks_(layout_.columns.size()) {}

@@ -21,7 +21,7 @@
 namespace plica {
 
 /// Return the pattern revisions of the laws in a step; a matrix is valid while they are unchanged.
-std::vector<int> pattern_revisions(const Model& model, const Step& step);
+std::vector<int> groups_revisions(const Model& model, const Step& step);
 
 class SystemMatrix final : public TangentSink {
  public:
@@ -30,7 +30,7 @@ class SystemMatrix final : public TangentSink {
 
   /// Whether the patterns are unchanged.
   [[nodiscard]] bool serves(const Model& model, const Step& step) const {
-    return pattern_revisions(model, step) == revisions_;
+    return groups_revisions(model, step) == revisions_;
   }
 
   /// Return the pattern of the full system, in the order of write_values. Unknowns: three per free node, then one per

@@ -6,10 +6,6 @@
 
 namespace plica {
 
-void throw_unread(const std::filesystem::path& file, const std::string& why) {
-  throw FileError(fmt::format("{}: cannot be read: {}", file.string(), why));
-}
-
 std::string bytes_from_child(const std::filesystem::path& file, const std::function<std::string()>& read,
                              const char* reader) {
   // A letter for the kind of answer, then what was read or the error.

@@ -9,12 +9,10 @@
 #include <vector>
 
 #include "core/bytes.hpp"
+#include "core/files.hpp"
 #include "tissue/mesh_input.hpp"
 
 namespace plica {
-
-/// Throw FileError `FILE: cannot be read: WHY`.
-[[noreturn]] void throw_unread(const std::filesystem::path& file, const std::string& why);
 
 /// Return the bytes that `read` returns in a child process, for read_in_child.
 std::string bytes_from_child(const std::filesystem::path& file, const std::function<std::string()>& read,

@@ -22,7 +22,7 @@ namespace {
 }  // namespace
 
 Frame read_frame(const std::filesystem::path& file) { refuse(file); }
-Tissue read_mesh_file(const std::filesystem::path& file, const std::string&, const MeshOptions&) { refuse(file); }
+HexahedralMesh read_vtk_hexahedra(const std::filesystem::path& file, const std::string&) { refuse(file); }
 TriangleSurface read_surface(const std::filesystem::path& file) { refuse(file); }
 std::vector<std::pair<double, std::string>> read_collection(const std::filesystem::path& pvd) { refuse(pvd); }
 PolygonFile read_vtk_polygons(const std::filesystem::path& file) {

@@ -102,14 +102,12 @@ Collection collection_in(const fs::path& pvd) {
 
 }  // namespace
 
-Frame read_frame(const fs::path& file) try {
-  Frame frame = read_in_child(file, [&] { return frame_in(file); });
+Frame read_frame(const fs::path& file) {
+  Frame frame = of_file(file, [&] { return read_in_child(file, [&] { return frame_in(file); }); });
   if (frame.elements.empty()) throw_unread(file, "it has no hexahedra");
   for (const auto& [name, vectors] : frame.node_vectors) require_finite(file, vectors);
   require_finite(file, frame.positions);
   return frame;
-} catch (const MeshError& error) {
-  throw MeshError("{}: {}", file.string(), error.what());
 }
 
 TriangleSurface read_surface(const fs::path& file) {

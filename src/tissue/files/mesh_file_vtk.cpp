@@ -168,11 +168,8 @@ PolygonFile polygons_in(const std::filesystem::path& path) {
 
 }  // namespace
 
-Tissue read_mesh_file(const std::filesystem::path& file, const std::string& apical_array,
-                      const MeshOptions& options) try {
-  return tissue_from_mesh(read_in_child(file, [&] { return mesh_in(file, apical_array); }), options);
-} catch (const MeshError& error) {
-  throw MeshError("{}: {}", file.string(), error.what());
+HexahedralMesh read_vtk_hexahedra(const std::filesystem::path& file, const std::string& apical_array) {
+  return read_in_child(file, [&] { return mesh_in(file, apical_array); });
 }
 
 PolygonFile read_vtk_polygons(const std::filesystem::path& path) {

@@ -101,16 +101,6 @@ std::vector<Column> columns_in_csv(std::string_view text, bool of_points) {
   return columns;
 }
 
-template <class Parse>
-auto parsed(const std::filesystem::path& file, const Parse& parse) {
-  const std::string text = read_file(file);
-  try {
-    return parse(text);
-  } catch (const MeshError& error) {
-    throw MeshError("{}: {}", file.string(), error.what());
-  }
-}
-
 }  // namespace
 
 PointTable points_in_csv(std::string_view text) {
@@ -132,10 +122,12 @@ PointTable points_in_csv(std::string_view text) {
   return table;
 }
 
-PointTable read_points_file(const std::filesystem::path& file) { return parsed(file, points_in_csv); }
+PointTable read_points_file(const std::filesystem::path& file) {
+  return of_file(file, [text = read_file(file)] { return points_in_csv(text); });
+}
 
 std::map<std::string, std::vector<double>> read_cell_table(const std::filesystem::path& file) {
-  return parsed(file, [](std::string_view text) {
+  return of_file(file, [text = read_file(file)] {
     std::map<std::string, std::vector<double>> arrays;
     std::vector<Column> columns = columns_in_csv(text, false);
     for (Column& column : columns) {

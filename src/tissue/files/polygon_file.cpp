@@ -109,15 +109,11 @@ PolygonFile read_by_ending(const std::filesystem::path& path) {
 }  // namespace
 
 PolygonFile read_polygon_file(const std::filesystem::path& path) {
-  try {
-    PolygonFile file = read_by_ending(path);
-    for (auto& [name, values] : file.arrays)
-      for (double& value : values)
-        if (!std::isfinite(value)) value = std::nan("");
-    return file;
-  } catch (const MeshError& error) {
-    throw MeshError("{}: {}", path.string(), error.what());
-  }
+  PolygonFile file = of_file(path, [&] { return read_by_ending(path); });
+  for (auto& [name, values] : file.arrays)
+    for (double& value : values)
+      if (!std::isfinite(value)) value = std::nan("");
+  return file;
 }
 
 }  // namespace plica

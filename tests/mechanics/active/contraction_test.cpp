@@ -269,7 +269,6 @@ TEST(Contraction, SpringsHaveNoResultantAndNoTorque) {
 
 TEST(Program, IsAlwaysOneByDefault) {
   for (const double time : {0.0, 1.0, 1e6}) EXPECT_EQ(Program().at(time), 1);
-  EXPECT_EQ(Program().end_s(), 0);
 }
 
 TEST(Program, IsLinearBetweenPointsAndHeldOutside) {
@@ -277,7 +276,6 @@ TEST(Program, IsLinearBetweenPointsAndHeldOutside) {
   for (const auto& [time, activity] :
        {std::pair{0.0, 0.5}, {10.0, 0.5}, {12.0, 0.6}, {20.0, 1.0}, {30.0, 0.5}, {39.0, 0.05}, {40.0, 0.0}, {1e6, 0.0}})
     EXPECT_NEAR(program.at(time), activity, 1e-14) << "at " << time;
-  EXPECT_EQ(program.end_s(), 40);
 }
 
 // At a jump the activity is still that before it: a step that ends there is not yet of the new one.

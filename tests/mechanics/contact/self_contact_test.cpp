@@ -181,9 +181,9 @@ TEST(SelfContact, MatrixCouplesWhatMayTouch) {
   };
   expect_assembled_is_matrix_free(law, parted(-0.2), 3);
   // Another pattern has another revision, the same pattern the same.
-  const auto revision_after = [&](double by) { return law.pattern_revision(law.next_internal(parted(by).step())); };
-  EXPECT_EQ(revision_after(0), law.pattern_revision(rest.internal));
-  EXPECT_NE(revision_after(1), law.pattern_revision(rest.internal));
+  const auto revision_after = [&](double by) { return law.groups_revision(law.next_internal(parted(by).step())); };
+  EXPECT_EQ(revision_after(0), law.groups_revision(rest.internal));
+  EXPECT_NE(revision_after(1), law.groups_revision(rest.internal));
 }
 
 // The push runs along the shortest way, however rough the surface: forces and moments add up to zero where a step

@@ -88,8 +88,8 @@ TEST(NewtonStepper, PressurisedSphereRestsOnItsShell) {
   add_elasticity(model);
   add_drag(model);
   const double pressure = 0.01;
-  model.laws.push_back(std::make_unique<FacePressure>(model.tissue, false, CellSet(model.tissue.cells.size(), true),
-                                                      pressure, Program{}));
+  model.laws.push_back(std::make_unique<FacePressure>(model.tissue, CellSide::basal,
+                                                      CellSet(model.tissue.cells.size(), true), pressure, Program{}));
   model.obstacles.push_back(std::make_unique<Vitelline>(model.tissue, *model.tissue.outer_shape));
   NewtonStepper solver(model);
   State before;

@@ -39,7 +39,7 @@ TEST_P(PolygonEmbryo, IsClosedAndUpright) {
 
 TEST(PolygonEmbryo, CellsAreOfOneSize) {
   const Tissue tissue = build_egg({500, 180, 180, 17.0, 7.0}, 1500, 3, {35, PolygonSplit::diagonals, 1});
-  const std::vector<double> areas = apical_areas(tissue, tissue.rest_positions);
+  const std::vector<double> areas = face_areas(tissue, CellSide::apical, tissue.rest_positions);
   const double mean = std::accumulate(areas.begin(), areas.end(), 0.0) / 1500;
   double squares = 0;
   for (const double area : areas) squares += (area - mean) * (area - mean);
@@ -156,7 +156,7 @@ TEST_P(PolygonEmbryo, UnderAFootballHasItsAreaAndVolume) {
   EXPECT_EQ(made.why_no_shape, "");
   EXPECT_EQ(tissue.cells.size(), 32U);
   EXPECT_EQ(expect_faces_enclose_the_cells(tissue).rims, 0U);
-  const std::vector<double> areas = apical_areas(tissue, tissue.rest_positions);
+  const std::vector<double> areas = face_areas(tissue, CellSide::apical, tissue.rest_positions);
   for (std::size_t c = 0; c < 32; ++c)
     EXPECT_NEAR(areas[c] / (edge * edge), c < 12 ? pentagon_area : hexagon_area, 1e-12);
   const double inside = 1 - height / (edge / 2 * football.vertices[0].norm());

@@ -20,7 +20,7 @@ TEST(PolygonSheet, FillsItsRectangle) {
   const Counted counted = expect_faces_enclose_the_cells(tissue);
   EXPECT_NEAR(counted.rim_area, 12 * 2 * (140 + 70), 1e-9);
   EXPECT_GT(min_scaled_jacobian(tissue, tissue.rest_positions), 0.15);
-  const std::vector<double> areas = apical_areas(tissue, tissue.rest_positions);
+  const std::vector<double> areas = face_areas(tissue, CellSide::apical, tissue.rest_positions);
   const double mean = 140.0 * 70 / 200;
   EXPECT_NEAR(std::accumulate(areas.begin(), areas.end(), 0.0) / 200, mean, 1e-9);
   double squares = 0;
