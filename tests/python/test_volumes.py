@@ -129,7 +129,8 @@ def test_prisms_make_scenarios_and_files(tmp_path):
     assert np.allclose(simulation.cell_data["label"], tissue.cell_data["label"])
     tissue.write(tmp_path / "cells.ply")
     read = plica.Simulation(plica.Scenario({"format": 1, "embryo": {"shape": "prisms", "file": str(tmp_path / "cells.ply")}}))
-    assert np.allclose(read.positions, simulation.positions, atol=1e-9)
+    places = [one.positions[np.lexsort(one.positions.round(6).T)] for one in (read, simulation)]  # nodes are numbered anew
+    assert np.allclose(*places, atol=1e-9)
     with pytest.raises(ValueError, match="has no arrays"):
         tissue.write(tmp_path / "cells.obj")
 
