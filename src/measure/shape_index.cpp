@@ -21,7 +21,7 @@ struct ShapeIndex {
 
 ShapeIndex shape_index(const ColumnInput& m) {
   const Tissue& tissue = m.model.tissue;
-  const std::vector<double> areas = apical_areas(tissue, m.state.positions);
+  const std::vector<double> areas = face_areas(tissue, CellSide::apical, m.state.positions);
   double sum = 0, squares = 0;
   for (std::size_t c = 0; c < areas.size(); ++c) {
     double perimeter = 0;

@@ -327,8 +327,6 @@ TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
          "region.r: contains no cell of the embryo");
   expect(egg + "[contraction.c]\nregion = \"all\"\nedges = \"apical\"\nstiffness_nN_per_um = 1\ndiagonals = true\n",
          "contraction.c.diagonals: cell ");
-  expect(egg + "elements = \"kites\"\n[division.d]\nregion = \"all\"\nat_s = 10\n",
-         "consist of kites or of several layers");
   expect(egg + "[volume]\nmethod = \"projection\"\n",
          "test.toml:9: volume.method: the paper's algorithm supports four-sided cells only, but this tissue has "
          "polygonal cells; set method to \"coupled\" or \"none\"");

@@ -112,8 +112,9 @@ TEST(Division, GivesAboutFourFreeNodesACut) {
     std::size_t lines = 0;
     for (const CellCut& cut : cuts) {
       std::set<double> places;  // along u or v: walls 2 and 3 run against them
+      const std::vector<Side> sides = tissue.sheet.cells[cut.cell.index()].sides();
       for (const int wall : {1 - cut.first_wall, 3 - cut.first_wall})
-        for (const Stop& stop : tissue.sheet.cells[cut.cell.index()].sides()[static_cast<std::size_t>(wall)])
+        for (const Stop& stop : sides[static_cast<std::size_t>(wall)])
           if (stop.at > 0) places.insert(wall < 2 ? stop.at : 1 - stop.at);
       lines += places.size();
     }

@@ -15,7 +15,7 @@ constexpr std::int64_t max_elements = 20'000'000;
 
 const std::vector<std::string_view> of_grid = {"pill", "sphere", "slice", "block"};  // shapes with cells on a grid
 const std::vector<std::string_view> of_polygons = {"egg", "points", "sheet", "surface", "prisms"};
-const std::vector<std::string_view> of_file = {"file", "points", "surface", "prisms"};
+const std::vector<std::string_view> read_shapes = {"file", "points", "surface", "prisms"};
 const std::vector<std::string_view> built = {"pill", "sphere", "slice", "block",  // shapes built by plica
                                              "egg",  "points", "sheet", "surface"};
 
@@ -182,12 +182,12 @@ ScenarioTable embryo_table() {
       row("points_depth_um", &E::points_depth_um, not_negative,
           "Depth of the points below the apical surface (µm), before `scale`.", {.shapes = {"points"}}),
       row("scale", &E::scale, positive, "Factors on measured x, y and z: shrinkage by fixation, or units.",
-          {.shapes = of_file}),
+          {.shapes = read_shapes}),
       row("rotate_deg", &E::rotate_deg, between(-360, 360), "Rotation about x, then y, then z (°), after `scale`.",
-          {.shapes = of_file}),
+          {.shapes = read_shapes}),
       row("centre", &E::centre, anything,
           "Move the centre to the origin, after `rotate_deg`: of the surface, of the volume, or the mean of points.",
-          {.shapes = of_file}),
+          {.shapes = read_shapes}),
       row("keep", &E::keep, one_of(words::keeps),
           "Separate pieces of the file: `all`, or only the `largest`. A surface must be one piece.",
           {.shapes = {"surface", "file"}}),
@@ -211,7 +211,7 @@ ScenarioTable embryo_table() {
           "`y_um`, `z_um`; others become cell arrays. `surface`: polygons in OBJ, OFF, PLY, VTP, VTK or tyssue HDF5. "
           "`prisms`: polygons with face arrays `cell` (number) and `is_apical` (1 or 0), the k-th corner of each basal "
           "polygon below that of the apical one.",
-          {.is_path = true, .shapes = of_file}),
+          {.is_path = true, .shapes = read_shapes}),
       row("cell_arrays", &E::cell_arrays, anything,
           "CSV table with a row per cell, in the order of `cell_id`: its columns become cell arrays.",
           {.is_path = true}),
