@@ -90,7 +90,7 @@ class Studio {
         this.ask();
       },
     });
-    this.start = new Start(this.connection);
+    this.start = new Start(this.connection, this.token);
     this.listen();
     this.state.on(["field"], () => this.fieldChanged());
     const tick = (now: number) => {

@@ -10,7 +10,7 @@ export class Start {
   private readonly filter = element("input", { type: "search", id: "find-file", placeholder: "Find a file",
     "aria-label": "Find a file" });
 
-  constructor(private readonly connection: Connection) {
+  constructor(private readonly connection: Connection, private readonly token: string) {
     const close = element("button", { type: "button", id: "close-start" }, "Close");
     close.addEventListener("click", () => this.dialog.close());
     this.dialog.append(element("header", {}, element("h2", {}, "Open a scenario or a tissue"), close), this.fault,
@@ -35,7 +35,8 @@ export class Start {
 
   private card(name: string, title: string): HTMLElement {
     const card = this.choice("card", name, "");
-    card.append(element("strong", {}, name), element("span", {}, title));
+    const picture = element("img", { src: `/card/${name}?token=${encodeURIComponent(this.token)}`, alt: "" });
+    card.append(picture, element("strong", {}, name), element("span", {}, title));
     return card;
   }
 
