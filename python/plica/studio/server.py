@@ -23,7 +23,8 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from .. import __version__, _core
 from ..errors import FileError, PlicaError
-from .session import Refused, Session, problem_of
+from .messages import problem_of
+from .session import Refused, Session
 
 HOST = "127.0.0.1"
 MOST_MESSAGE_BYTES = 2_000_000
@@ -120,7 +121,7 @@ class Page:
 
     async def _send_states(self) -> None:
         session = self.session
-        key = (session.revision, session.rest.version)
+        key = (session.revision, session.rest.version, session.candidate.asked, session.candidate.version)
         if key != self._draft:
             self._draft = key
             await self.send({"draft": session.draft_state()})
