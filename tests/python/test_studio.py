@@ -75,6 +75,21 @@ def test_a_draft_is_written_as_differences_and_reads_back():
     assert draft.table["cortex"]["apical"]["tension_mN_per_m"] == 1.5
 
 
+def test_all_of_a_drag_of_a_slider_is_one_step_of_undo():
+    draft = Draft.of("drosophila-deep")
+    before = draft.table
+    for low in (10, 40, 70, 60):
+        draft.set({"region.floor.length_percent": [low, 100]}, drag="slider 1")
+    draft.set({"region.floor.length_percent": None}, drag="slider 1")  # back where it was
+    draft.set({"region.floor.length_percent": [30, 100]}, drag="slider 1")
+    draft.set({"region.floor.angle_deg": [-20, 20]}, drag="slider 2")
+    assert draft.table["region"]["floor"]["length_percent"] == [30, 100]
+    draft.undo()
+    assert "angle_deg" not in draft.table["region"]["floor"] and draft.table != before
+    draft.undo()
+    assert draft.table == before and draft.place == 0
+
+
 def test_a_removed_table_is_written_whole():
     draft = Draft.of("furrow-slice")
     draft.set({"cortex.walls": None})

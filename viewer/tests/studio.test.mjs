@@ -126,6 +126,23 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.click("#redo");
   await page.waitForSelector('[data-table="region.spot"]', { state: "attached" });
 
+  // A slider of a selector shows on the way which cells the region has; one undo takes the drag back.
+  await page.click('[data-table="region.mesoderm"] > summary');
+  const cells = () => page.textContent('[data-region="mesoderm"]');
+  await page.waitForFunction(() => /cell/.test(document.querySelector('[data-region="mesoderm"]').textContent));
+  const before = await cells();
+  await page.evaluate(() => document.querySelectorAll('[data-table="region.mesoderm"] .more').forEach((one) => (one.open = true)));
+  await page.locator('[data-key="region.mesoderm.y_um/0"]').evaluate((slider) => {
+    for (const value of ["-20", "-10", "0"]) {
+      slider.value = value;
+      slider.dispatchEvent(new Event("input"));
+    }
+  });
+  await page.waitForFunction((before) => document.querySelector('[data-region="mesoderm"]').textContent !== before, before);
+  await page.locator('[data-key="region.mesoderm.y_um/0"]').evaluate((slider) => slider.dispatchEvent(new Event("change")));
+  await page.click("#undo");
+  await page.waitForFunction((before) => document.querySelector('[data-region="mesoderm"]').textContent === before, before);
+
   // A wrong value is refused at its field as it is typed, a right one taken.
   await page.click('[data-table="cortex.apical"] > summary');
   const tension = '[data-key="cortex.apical.tension_mN_per_m"]';

@@ -222,8 +222,8 @@ class Session:
         self._drafted().with_changes(self._typed(changes))
         return {}
 
-    def do_set(self, changes: Table) -> Table:
-        self._drafted().set(self._typed(changes))
+    def do_set(self, changes: Table, drag: str = "") -> Table:
+        self._drafted().set(self._typed(changes), str(drag))
         self._draft_changed()
         return {"revision": self.revision}
 

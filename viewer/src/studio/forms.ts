@@ -4,6 +4,8 @@ import { lastOf, words } from "../text";
 import { type Connection, type DraftState, type KeyRow, Problem, type SchemaTable, type Table,
   type Value } from "./connection";
 import { curveOf } from "./curve";
+import type { Shape } from "./messages";
+import { type Bounds, boundsOf, sliders } from "./slider";
 
 const checkAfter = 150; // ms without typing
 
@@ -39,12 +41,17 @@ export class Forms {
   private draft: DraftState | null = null;
   private readonly opened = new Set<string>();
   private readonly pending = new Map<string, string | boolean>(); // refused so far, by key
+  private shape: Shape | null = null; // of the tissue at rest
+  private regionSizes = new Map<string, number>();
+  private drags = 0;
+  private isDragging = false;
   private readonly list = element("div", { id: "tables" });
+  private readonly arrays = element("datalist", { id: "array-names" });
   private readonly filter = element("input", { type: "search", id: "find-key", placeholder: "Find a key",
     "aria-label": "Find a key" });
 
   constructor(holder: HTMLElement, private readonly connection: Connection) {
-    holder.append(this.filter, this.adding(), this.list);
+    holder.append(this.filter, this.adding(), this.list, this.arrays);
     this.filter.addEventListener("input", () => this.applyFilter());
   }
 
@@ -60,11 +67,32 @@ export class Forms {
   show(draft: DraftState): void {
     const isSame = this.draft?.revision === draft.revision && this.list.childElementCount > 0;
     this.draft = draft;
-    if (this.schema.length === 0 || isSame) return;
+    if (this.schema.length > 0 && !isSame && !this.isDragging) this.build();
+  }
+
+  /** Take the bounds of sliders from a tissue. */
+  fit(shape: Shape, regionSizes: Map<string, number>): void {
+    this.regionSizes = regionSizes;
+    this.showSizes();
+    if (JSON.stringify([shape.box, shape.own_fields]) === JSON.stringify([this.shape?.box, this.shape?.own_fields])) return;
+    this.shape = shape;
+    this.arrays.replaceChildren(...Object.keys(shape.own_fields).map((name) => element("option", { value: name })));
+    if (this.draft && this.schema.length > 0 && !this.isDragging) this.build();
+  }
+
+  private showSizes(): void {
+    for (const size of this.list.querySelectorAll<HTMLElement>(".size")) {
+      const count = this.regionSizes.get(size.dataset.region!);
+      size.textContent = count === undefined ? "" : ` ${count} cell${count === 1 ? "" : "s"}`;
+    }
+  }
+
+  private build(): void {
     const focused = (document.activeElement as HTMLElement | null)?.dataset.key;
     this.list.replaceChildren(...this.places().map((place) => this.formOf(place)));
     if (focused) this.list.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus();
     this.applyFilter();
+    this.showSizes();
   }
 
   private places(): Place[] {
@@ -98,7 +126,8 @@ export class Forms {
     const has = (row: KeyRow) => valueAt(values, row.key) !== undefined;
     const differs = base && rows.some(({ key }) => this.differs(prefix + key));
     details.append(element("summary", { title: plain(schema.meaning) }, name === "" ? "General" : name,
-      ...(differs ? [element("span", { class: "changed", title: `differs from ${this.draft?.base}` }, " ●")] : [])));
+      ...(differs ? [element("span", { class: "changed", title: `differs from ${this.draft?.base}` }, " ●")] : []),
+      ...(schema.path === "region.*" ? [element("span", { class: "size", "data-region": name.slice("region.".length) })] : [])));
     details.addEventListener("toggle", () => {
       if (details.open) this.opened.add(name);
       else this.opened.delete(name);
@@ -141,6 +170,8 @@ export class Forms {
           ...(this.draft?.base_table && this.differs(key) ? [this.reset(key)] : [])),
         input, element("span", { class: "unit" }, unit)), fault);
     this.listen(key, row, input, fault);
+    const bounds = prefix.startsWith("region.") ? boundsOf(row.key, values.array, this.shape) : null;
+    if (bounds) box.append(this.sliders(key, valueAt(values, row.key), bounds, input as HTMLInputElement, fault));
     return box;
   }
 
@@ -162,7 +193,36 @@ export class Forms {
       spellcheck: "false", ...attributes });
     input.value = String(this.pending.get(key) ?? textOf(value));
     if (this.isRegion(row.key)) input.setAttribute("list", "region-names");
+    if (lastOf(row.key) === "array") input.setAttribute("list", "array-names");
     return input;
+  }
+
+  // One order at a time, so that the tissue follows the pointer; all of a drag are one step of undo.
+  private sliders(key: string, value: Value | undefined, bounds: Bounds, input: HTMLInputElement,
+    fault: HTMLElement): HTMLElement {
+    let next: Value | undefined;
+    let isBusy = false;
+    const drag = `${key} ${++this.drags}`;
+    const send = () => {
+      if (isBusy || next === undefined) return;
+      const changes = { [key]: next };
+      [isBusy, next] = [true, undefined];
+      this.connection.order("set", { changes, drag })
+        .then(() => (fault.textContent = ""), (problem: Problem) => (fault.textContent = problem.message))
+        .then(() => {
+          isBusy = false;
+          send();
+        });
+    };
+    return sliders(key, value, bounds, (given) => {
+      this.isDragging = true;
+      input.value = textOf(given);
+      next = given;
+      send();
+    }, () => {
+      this.isDragging = false;
+      if (!isBusy) this.build();
+    });
   }
 
   private isRegion(key: string): boolean {

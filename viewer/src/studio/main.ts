@@ -213,6 +213,7 @@ class Studio {
   private takeTopology(before: LiveTopology | null, topology: LiveTopology): void {
     const { shape } = topology;
     this.tools?.showRegions(topology.regionNames);
+    if (this.chosen.run === 0) this.forms.fit(shape, topology.regionSizes);
     const own = Object.entries(shape.own_fields).map(([name, range]): Field => (
       { name, label: name, unit: "", on_nodes: false, scale: "from-zero", map: "from_zero", ...rangeOf(range) }));
     this.page.fields = [...this.known, ...own, difference];
