@@ -154,6 +154,15 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.waitForFunction(() => document.querySelector("#text").textContent.includes("tension_mN_per_m = 1.6"));
   assert.match(await page.textContent("#text"), /base = "furrow-slice"/);
 
+  // Times are typed in minutes.
+  await page.click('[data-table="time"] > summary');
+  assert.equal(await page.inputValue('[data-key="time.end_s"]'), "4");
+  await page.fill('[data-key="time.end_s"]', "3.5");
+  await page.press('[data-key="time.end_s"]', "Enter");
+  await page.waitForFunction(() => document.querySelector("#text").textContent.includes("end_s = 210"));
+  await page.click("#undo");
+  await page.waitForFunction(() => document.querySelector("#text").textContent.includes("end_s = 240"));
+
   await page.fill("#until", "1");
   await page.click("#go-to");
   await page.waitForFunction(() => document.querySelector('li[data-run="1"]')?.dataset.status === "paused");

@@ -39,8 +39,9 @@ function plain(meaning: string): string {
 export class Forms {
   private schema: SchemaTable[] = [];
   private draft: DraftState | null = null;
+  private readonly inMinutes = new Map<KeyRow, KeyRow>(); // keys in s that may be given in min, with that key
   private readonly opened = new Set<string>();
-  private readonly pending = new Map<string, string | boolean>(); // refused so far, by key
+  private readonly pending = new Map<string, string | number | boolean>(); // refused so far, by key
   private shape: Shape | null = null; // of the tissue at rest
   private regionSizes = new Map<string, number>();
   private drags = 0;
@@ -57,6 +58,11 @@ export class Forms {
 
   takeSchema(tables: SchemaTable[]): void {
     this.schema = tables.filter(({ path }) => path !== "expect.*");
+    for (const { rows } of this.schema)
+      for (const row of rows) {
+        const other = rows.find((one) => one.instead_of === row.key && one.key === row.key.replace(/_s$/, "_min"));
+        if (other && row.type === "number") this.inMinutes.set(row, other);
+      }
     const kind = document.getElementById("add-kind") as HTMLSelectElement;
     kind.replaceChildren(...this.schema.filter(({ path }) => path.endsWith(".*"))
       .map(({ path, meaning }) => element("option", { value: path, title: plain(meaning) }, path.replace(".*", ""))));
@@ -161,7 +167,7 @@ export class Forms {
 
   private field(prefix: string, row: KeyRow, values: Table): HTMLElement {
     const key = prefix + row.key;
-    const [name, unit] = words(row.key);
+    const [name, unit] = words((this.inMinutes.get(row) ?? row).key);
     const input = this.input(key, row, valueAt(values, row.key));
     const fault = element("span", { class: "fault", role: "alert" });
     const box = element("div", { class: "field" },
@@ -189,9 +195,12 @@ export class Forms {
       select.value = textOf(value);
       return select;
     }
-    const input = element("input", { type: "text", placeholder: row.allowed || row.type, autocomplete: "off",
+    const { allowed, type } = this.inMinutes.get(row) ?? row;
+    const input = element("input", { type: "text", placeholder: allowed || type, autocomplete: "off",
       spellcheck: "false", ...attributes });
-    input.value = String(this.pending.get(key) ?? textOf(value));
+    const now = this.pending.get(key) ?? value;
+    const isInMinutes = this.inMinutes.has(row) && typeof now === "number";
+    input.value = textOf(isInMinutes ? Number((now / 60).toPrecision(8)) : now);
     if (this.isRegion(row.key)) input.setAttribute("list", "region-names");
     if (lastOf(row.key) === "array") input.setAttribute("list", "array-names");
     return input;
@@ -229,11 +238,16 @@ export class Forms {
     return ["region", "about", "from", "neighbours_of"].includes(lastOf(key));
   }
 
-  private listen(key: string, _row: KeyRow, input: HTMLInputElement | HTMLSelectElement, fault: HTMLElement): void {
-    const value = () => (input instanceof HTMLInputElement && input.type === "checkbox" ? input.checked : input.value);
+  private listen(key: string, row: KeyRow, input: HTMLInputElement | HTMLSelectElement, fault: HTMLElement): void {
+    const value = () => {
+      if (input instanceof HTMLInputElement && input.type === "checkbox") return input.checked;
+      const minutes = this.inMinutes.has(row) && input.value.trim() !== "" ? Number(input.value) : NaN;
+      return Number.isFinite(minutes) ? Number((60 * minutes).toPrecision(12)) : input.value;
+    };
+    const seconds = this.inMinutes.has(row) ? " (in seconds)" : "";
     const tell = (problem: unknown) => {
       const texts = problem instanceof Problem ? (problem.byKey.length > 0 ? problem.byKey.map((one) =>
-        one.key === key || one.key === "" ? one.text : `${one.key}: ${one.text}`) : [problem.message]) : [];
+        one.key === key || one.key === "" ? one.text + seconds : `${one.key}: ${one.text}`) : [problem.message]) : [];
       fault.textContent = texts.join("\n");
       input.setAttribute("aria-invalid", String(texts.length > 0));
     };
