@@ -1,4 +1,4 @@
-"""Binary messages to the page: the length of a JSON head, the head, and arrays of four-byte numbers that it lists; problems."""
+"""Messages to the page: problems, and binary ones: the length of a JSON head, the head, and arrays of four-byte numbers."""
 from __future__ import annotations
 
 import json

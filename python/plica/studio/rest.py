@@ -51,7 +51,8 @@ class Rest:
             built, advice, problem = self._built, list[str](), ""
             try:
                 sim = Simulation(make(), threads=1)
-                built = (version, shape_message(sim, f"{self.number}/{version}"), sim.positions.astype("f4"), values_now(sim))
+                shape = shape_message(sim, f"{self.number}/{version}")
+                built = (version, shape, sim.positions.astype("f4"), values_now(sim))
                 advice = list(sim._core.advice)
             except (PlicaError, ValueError, OSError, MemoryError) as error:
                 problem = str(error) or "out of memory; use fewer cells"

@@ -106,7 +106,8 @@ def of_image(path: Path, kind: str, options: Table, made: Path) -> str:
     for axis, own, value in zip(("planes", "rows", "columns"), given, spacing or (None, None, None)):
         options[f"spacing_{axis}"] = f"{own or value or 1:g}"
     distances = tuple(number(options, f"spacing_{axis}") or 1.0 for axis in ("planes", "rows", "columns"))
-    tissue = tissue_of_labels(array, distances, apical=options["apical"] or None, gap_px=gap_px, **common)  # type: ignore[arg-type]
+    tissue = tissue_of_labels(array, distances, apical=options["apical"] or None,  # type: ignore[arg-type]
+                              gap_px=gap_px, **common)
     tissue.write(made)
     return "prisms"
 
@@ -204,9 +205,10 @@ class Candidate(Rest):
         """Return what the page shows beside the picture."""
         if self.path is None:
             return None
-        fields = [{**one._asdict(), "value": self.options.get(one.name, one.value)} for one in OPTIONS.get(self.kind, [])]
-        return {"file": self.path.name, "kind": self.kind, "kinds": ENDINGS[self.path.suffix.lower()], "options": fields,
-                "remarks": self.remarks, "problem": self.problem, "cells": self.cells, "asked": self.asked}
+        fields = [{**one._asdict(), "value": self.options.get(one.name, one.value)}
+                  for one in OPTIONS.get(self.kind, [])]
+        return {"file": self.path.name, "kind": self.kind, "kinds": ENDINGS[self.path.suffix.lower()],
+                "options": fields, "remarks": self.remarks, "problem": self.problem, "cells": self.cells, "asked": self.asked}
 
     def draft(self) -> Draft:
         """Return the tissue as a scenario. Cells made of an image get a file of their own, beside the image."""
