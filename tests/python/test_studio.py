@@ -75,6 +75,21 @@ def test_a_draft_is_written_as_differences_and_reads_back():
     assert draft.table["cortex"]["apical"]["tension_mN_per_m"] == 1.5
 
 
+def test_all_of_a_drag_of_a_slider_is_one_step_of_undo():
+    draft = Draft.of("drosophila-deep")
+    before = draft.table
+    for low in (10, 40, 70, 60):
+        draft.set({"region.floor.length_percent": [low, 100]}, drag="slider 1")
+    draft.set({"region.floor.length_percent": None}, drag="slider 1")  # back where it was
+    draft.set({"region.floor.length_percent": [30, 100]}, drag="slider 1")
+    draft.set({"region.floor.angle_deg": [-20, 20]}, drag="slider 2")
+    assert draft.table["region"]["floor"]["length_percent"] == [30, 100]
+    draft.undo()
+    assert "angle_deg" not in draft.table["region"]["floor"] and draft.table != before
+    draft.undo()
+    assert draft.table == before and draft.place == 0
+
+
 def test_a_removed_table_is_written_whole():
     draft = Draft.of("furrow-slice")
     draft.set({"cortex.walls": None})
@@ -342,10 +357,71 @@ def test_files_are_those_of_the_folder(session, tmp_path):
     assert "own.toml" in session.order("gallery", {})["files"]
 
 
-def test_a_tissue_file_is_opened(session, tmp_path):
+def looked_at(session, source, **options):
+    session.order("look_at", {"source": source, "options": options})
+    wait(lambda: session.candidate.cells or session.candidate.problem)
+    return session.candidate.state()
+
+
+def test_a_mesh_is_looked_at_and_used(session, tmp_path):
     lines = ["OFF", "9 4 0"] + [f"{20 * x} {20 * y} 0" for y in range(3) for x in range(3)]
     lines += [f"4 {i} {i + 1} {i + 4} {i + 3}" for i in (0, 1, 3, 4)]
     (tmp_path / "sheet.off").write_text("\n".join(lines) + "\n")
-    session.order("open", {"source": "sheet.off"})
-    assert session.draft.table["embryo"]["shape"] == "surface"
+    before = session.draft.table
+    shown = looked_at(session, "sheet.off")
+    assert (shown["kind"], shown["cells"], shown["problem"]) == ("polygons", 4, "")
+    assert any("4 cells" in remark for remark in shown["remarks"]) and not any("no force" in one for one in shown["remarks"])
+    assert session.draft.table is before, "nothing is used before it is accepted"
+    assert session.frame_messages({"run": -1, "slot": 0, "field": "region", "known": -1})
+    assert looked_at(session, "sheet.off", cell_height_um="12", scale="2")["problem"] == ""
+    session.order("use", {})
+    embryo = session.draft.table["embryo"]
+    assert (embryo["shape"], embryo["cell_height_um"], embryo["scale"]) == ("surface", 12, [2, 2, 2])
     wait(lambda: session.rest.cells == 4)
+    session.order("undo", {})
+    assert session.draft.table == before
+
+
+def test_a_label_image_becomes_cells_beside_it(session, tmp_path):
+    pytest.importorskip("skimage")
+    rows, columns = np.mgrid[:100, :120]
+    labels = 1 + (rows // 20) * 7 + (columns + 10 * (rows // 20 % 2)) // 20
+    np.save(tmp_path / "wing.npy", labels.astype("u2"))
+    shown = looked_at(session, "wing.npy", um_per_pixel="0.5")
+    assert shown["kind"] == "label image" and shown["cells"] > 9, shown
+    for _ in range(2):
+        session.order("use", {})
+    assert session.draft.table["embryo"]["file"] == str(tmp_path / "wing-cells-2.ply"), "no file is written over"
+    width_um = np.ptp(plica.Simulation(plica.Scenario(session.draft.table)).rest_positions[:, 0])
+    assert 30 < width_um < 60  # of 120 pixels, without the cells at the border
+    assert "not a number" in looked_at(session, "wing.npy", um_per_pixel="much")["problem"]
+    with pytest.raises(ValueError):
+        session.order("use", {})
+
+
+def test_a_label_volume_asks_for_its_apical_side(session, tmp_path):
+    pytest.importorskip("skimage")
+    planes, rows, columns = np.mgrid[:30, :80, :80]
+    labels = 1 + (rows // 16) * 6 + (columns + 8 * (rows // 16 % 2)) // 16
+    labels[(planes < 6) | (planes >= 24)] = 0
+    np.save(tmp_path / "sheet.npy", labels.astype("u2"))
+    shown = looked_at(session, "sheet.npy")
+    assert shown["kind"] == "label volume" and "apical" in shown["problem"], shown
+    assert {one["name"]: one["value"] for one in shown["options"]}["spacing_planes"] == "1"
+    shown = looked_at(session, "sheet.npy", kind="label volume", apical="+z", spacing_planes="2")
+    assert shown["problem"] == "" and shown["cells"] > 6, shown
+    session.order("use", {})
+    assert session.draft.table["embryo"]["shape"] == "prisms"
+
+
+def test_centres_are_those_of_an_open_sheet_or_of_a_closed_embryo(session, tmp_path):
+    pytest.importorskip("scipy")
+    lines = [f"{8 * (column + row % 2 / 2)},{7 * row},{column}" for row in range(6) for column in range(6)]
+    (tmp_path / "sheet.csv").write_text("\n".join(["x_um,y_um,gene", *lines]) + "\n")
+    shown = looked_at(session, "sheet.csv", cell_height_um="10")
+    assert shown["kind"] == "points on an open sheet" and shown["cells"] == 36, shown
+    (tmp_path / "other.csv").write_text("a,b\n1,2\n")
+    assert "x_um" in looked_at(session, "other.csv")["problem"]
+    for wrong in ("../sheet.csv", "none.csv", "own.toml"):
+        with pytest.raises(Refused):
+            session.order("look_at", {"source": wrong})

@@ -90,6 +90,16 @@ def test_only_this_machine_with_its_token_is_served(studio):
             assert other.connect_ex((address, int(port))) != 0
 
 
+def test_every_built_in_scenario_has_a_picture(studio):
+    head, token = _address(studio)
+    for name in plica.builtin_scenarios():
+        with urllib.request.urlopen(f"{head}/card/{name}?token={token}") as answer:
+            assert answer.read(8) == b"\x89PNG\r\n\x1a\n" and answer.headers["Content-Type"] == "image/png", name
+    for name in ("none", "..%2fpage", "cards"):
+        assert _status(f"{head}/card/{name}?token={token}") == 404
+    assert _status(f"{head}/card/drosophila") == 403
+
+
 def test_huge_and_malformed_messages_leave_the_session_as_it_was(studio):
     with _connected(studio) as page:
         before = _ask(page, "gallery")

@@ -112,6 +112,7 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   const { page, done } = await open();
   // A new folder begins with the choice of a scenario.
   await page.waitForSelector("dialog[open] .card");
+  await page.waitForFunction(() => [...document.querySelectorAll(".card img")].every((one) => one.naturalWidth > 0));
   await page.click('.file[data-source="short.toml"]');
   await page.waitForSelector("body[data-ready]");
   await page.waitForFunction(() => document.querySelector("#title").textContent === "A short slice");
@@ -125,6 +126,23 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.click("#redo");
   await page.waitForSelector('[data-table="region.spot"]', { state: "attached" });
 
+  // A slider of a selector shows on the way which cells the region has; one undo takes the drag back.
+  await page.click('[data-table="region.mesoderm"] > summary');
+  const cells = () => page.textContent('[data-region="mesoderm"]');
+  await page.waitForFunction(() => /cell/.test(document.querySelector('[data-region="mesoderm"]').textContent));
+  const before = await cells();
+  await page.evaluate(() => document.querySelectorAll('[data-table="region.mesoderm"] .more').forEach((one) => (one.open = true)));
+  await page.locator('[data-key="region.mesoderm.y_um/0"]').evaluate((slider) => {
+    for (const value of ["-20", "-10", "0"]) {
+      slider.value = value;
+      slider.dispatchEvent(new Event("input"));
+    }
+  });
+  await page.waitForFunction((before) => document.querySelector('[data-region="mesoderm"]').textContent !== before, before);
+  await page.locator('[data-key="region.mesoderm.y_um/0"]').evaluate((slider) => slider.dispatchEvent(new Event("change")));
+  await page.click("#undo");
+  await page.waitForFunction((before) => document.querySelector('[data-region="mesoderm"]').textContent === before, before);
+
   // A wrong value is refused at its field as it is typed, a right one taken.
   await page.click('[data-table="cortex.apical"] > summary');
   const tension = '[data-key="cortex.apical.tension_mN_per_m"]';
@@ -135,6 +153,15 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.press(tension, "Enter");
   await page.waitForFunction(() => document.querySelector("#text").textContent.includes("tension_mN_per_m = 1.6"));
   assert.match(await page.textContent("#text"), /base = "furrow-slice"/);
+
+  // Times are typed in minutes.
+  await page.click('[data-table="time"] > summary');
+  assert.equal(await page.inputValue('[data-key="time.end_s"]'), "4");
+  await page.fill('[data-key="time.end_s"]', "3.5");
+  await page.press('[data-key="time.end_s"]', "Enter");
+  await page.waitForFunction(() => document.querySelector("#text").textContent.includes("end_s = 210"));
+  await page.click("#undo");
+  await page.waitForFunction(() => document.querySelector("#text").textContent.includes("end_s = 240"));
 
   await page.fill("#until", "1");
   await page.click("#go-to");
@@ -177,6 +204,38 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   execFileSync(plica, ["run", join(folder, "taken.toml"), "--out", join(folder, "taken"), "--quiet"]);
   assert.deepEqual(lastRow(join(folder, ".plica-studio/run-0003/results/series.csv")),
     lastRow(join(folder, "taken/series.csv")));
+  await done();
+});
+
+test("a tissue of mine is shown with remarks before it is used", options, async () => {
+  const at = [0, 1, 2, 3, 4];
+  writeFileSync(join(folder, "sheet.off"), ["OFF", "25 16 0", ...at.flatMap((y) => at.map((x) => `${20 * x} ${20 * y} 0`)),
+    ...at.slice(1).flatMap((_, y) => at.slice(1).map((_, x) => 5 * y + x).map((i) => `4 ${i} ${i + 1} ${i + 6} ${i + 5}`))]
+    .join("\n"));
+  writeFileSync(join(folder, "broken.off"), "OFF\n1 0 0\n0 0 0\n");
+  const { page, done } = await open();
+  await page.waitForSelector("body[data-ready]");
+  const title = await page.textContent("#title");
+  await page.click("#open");
+  await page.click('.file[data-source="broken.off"]');
+  await page.waitForFunction(() => document.querySelector("#candidate .fault").textContent.includes("broken.off"));
+  assert.ok(await page.isDisabled("#use"));
+  await page.click("#open");
+  await page.click('.file[data-source="sheet.off"]');
+  await page.waitForSelector("#use:not([disabled])");
+  assert.match(await page.textContent("#remarks"), /16 cells/);
+  await page.waitForFunction(() => document.body.dataset.frame.startsWith("-1/"));
+  assert.equal(await page.textContent("#title"), title);
+  await page.fill("#ask-cell_height_um", "15");
+  await page.press("#ask-cell_height_um", "Tab");
+  await page.waitForFunction(() => document.querySelector("#ask-cell_height_um")?.value === "15" &&
+    !document.querySelector("#use").disabled);
+  await page.click("#use");
+  await page.waitForFunction(() => document.querySelector("#title").textContent === "sheet.off");
+  await page.waitForFunction(() => document.querySelector("#text").textContent.includes("cell_height_um = 15"));
+  assert.ok(await page.isHidden("#candidate"));
+  await page.click("#undo");
+  await page.waitForFunction((title) => document.querySelector("#title").textContent === title, title);
   await done();
 });
 

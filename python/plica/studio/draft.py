@@ -99,7 +99,7 @@ class Draft:
 
     def __init__(self, table: Table, base: str = "") -> None:
         self.base = base if base in _core.scenarios else ""
-        self.history, self.place = [table], 0
+        self.history, self.place, self.drag = [table], 0, ""
 
     @classmethod
     def of(cls, source: str | os.PathLike[str] | Scenario) -> Draft:
@@ -126,8 +126,13 @@ class Draft:
         """Return the complete scenario with the changes, checked."""
         return Scenario(changed(self.table, changes)).to_dict()
 
-    def set(self, changes: Changes) -> None:
-        self.go_to(self.with_changes(changes))
+    def set(self, changes: Changes, drag: str = "") -> None:
+        """Make changes. Those of one `drag` of a slider are undone together."""
+        table = self.with_changes(changes)
+        if drag and drag == self.drag:
+            self.undo()
+        self.go_to(table)
+        self.drag = drag if self.table is table else ""
 
     def go_to(self, table: Table) -> None:
         """Make another valid scenario the present one; the earlier ones can be restored."""
@@ -137,6 +142,7 @@ class Draft:
         self.place = len(self.history) - 1
 
     def undo(self) -> None:
+        self.drag = ""
         self.place = max(self.place - 1, 0)
 
     def redo(self) -> None:

@@ -23,17 +23,18 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from .. import __version__, _core
 from ..errors import FileError, PlicaError
-from .session import Refused, Session, problem_of
+from .messages import problem_of
+from .session import Refused, Session
 
 HOST = "127.0.0.1"
 MOST_MESSAGE_BYTES = 2_000_000
 MOST_CONNECTIONS = 20
 STATES_APART_S = 0.15
 NAMES = (HOST, "localhost")
-PAGE = Path(__file__).parent / "page.html"
+PAGE, CARDS = Path(__file__).parent / "page.html", Path(__file__).parent / "cards"
 HEADERS = {
     "Content-Security-Policy": "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
-                               "img-src data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
+                               "img-src 'self' data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'; "
                                "frame-ancestors http://localhost:* http://127.0.0.1:*",
     "Referrer-Policy": "no-referrer", "X-Content-Type-Options": "nosniff", "Cache-Control": "no-store",
     "Cross-Origin-Resource-Policy": "same-origin",
@@ -120,7 +121,7 @@ class Page:
 
     async def _send_states(self) -> None:
         session = self.session
-        key = (session.revision, session.rest.version)
+        key = (session.revision, session.rest.version, session.candidate.asked, session.candidate.version)
         if key != self._draft:
             self._draft = key
             await self.send({"draft": session.draft_state()})
@@ -150,7 +151,7 @@ class Server:
             return Response(page, media_type="text/html", headers=HEADERS)
 
         routes = [Route("/", self._guarded(show)), Route("/take/{number:int}/{name}", self._guarded(self._take)),
-                  WebSocketRoute("/ws", self._connect)]
+                  Route("/card/{name}", self._guarded(self._card)), WebSocketRoute("/ws", self._connect)]
         self.app = Starlette(routes=routes)
         config = uvicorn.Config(self.app, log_level="error", ws="websockets-sansio", ws_max_size=MOST_MESSAGE_BYTES,
                                 ws_per_message_deflate=False, lifespan="off", timeout_graceful_shutdown=1)
@@ -195,6 +196,13 @@ class Server:
                 return PlainTextResponse("Refused: open the address that plica studio printed.\n", 403, HEADERS)
             return await show(request)
         return guarded
+
+    async def _card(self, request: Request) -> Response:
+        """Give the picture of a built-in scenario."""
+        name = request.path_params["name"]
+        if name not in _core.scenarios or not (CARDS / f"{name}.png").is_file():
+            return PlainTextResponse(f"{name[:60]}: no such picture\n", 404, HEADERS)
+        return Response((CARDS / f"{name}.png").read_bytes(), media_type="image/png", headers=HEADERS)
 
     async def _take(self, request: Request) -> Response:
         """Give the scenario or the script of a run as a file."""

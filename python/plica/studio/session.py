@@ -10,86 +10,27 @@ import shutil
 import threading
 import tomllib
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, Optional
 
 from .. import _core
-from ..errors import PlicaError, ScenarioError
+from ..errors import PlicaError
 from ..scenario import Scenario, _items, builtin_scenarios
 from ..simulation import Simulation
 from .acts import act, end_of_act, running_acts, time_of_act
 from .draft import Draft, Table, row_of, schema, text_of, typed
-from .messages import packed
+from .rest import Rest
 from .run import StudioRun
-from .shapes import Floats, shape_message, values_now
+from .tissues import ENDINGS, Candidate
 
 FOLDER = ".plica-studio"
-TISSUES = {".vtu": ("file", "surface"), ".vtk": ("file", "surface"), ".vtp": ("surface",), ".obj": ("surface",),
-           ".off": ("surface",), ".ply": ("surface",), ".hf5": ("surface",), ".csv": ("points",)}
 MOST_FILES, MOST_SEEN, MOST_FILE_BYTES, MOST_RUNS = 500, 20_000, 500_000_000, 100
 NAME = re.compile(r"[A-Za-z0-9_-]{1,60}")
 
 
 class Refused(Exception):
     """Order that cannot be carried out; the message names the reason and the remedy."""
-
-
-class Rest:
-    """The draft's tissue at rest, built in a thread of its own whenever the draft has changed."""
-
-    def __init__(self, told: Callable[[], None]) -> None:
-        self.version, self.cells = 0, 0
-        self.advice: list[str] = []
-        self.problem = ""
-        self._built: Optional[tuple[int, bytes, Floats, dict[str, Floats]]] = None  # version, shape, positions, values
-        self._told, self._wanted = told, threading.Condition()
-        self._next: Optional[Scenario] = None
-        self._closing = False
-        self._thread = threading.Thread(target=self._work, name="plica studio rest", daemon=True)
-        self._thread.start()
-
-    def close(self) -> None:
-        with self._wanted:
-            self._closing = True
-            self._wanted.notify()
-        self._thread.join()
-
-    def build(self, scenario: Scenario) -> None:
-        with self._wanted:
-            self._next = scenario
-            self._wanted.notify()
-
-    def _work(self) -> None:
-        while True:
-            with self._wanted:
-                while self._next is None and not self._closing:
-                    self._wanted.wait()
-                if self._closing or self._next is None:
-                    return
-                scenario, self._next = self._next, None
-            version = self.version + 1
-            try:
-                sim = Simulation(scenario, threads=1)
-                self._built = (version, shape_message(sim, f"0/{version}"), sim.positions.astype("f4"), values_now(sim))
-                self.advice, self.problem, self.cells = list(sim._core.advice), "", len(sim.pressures)
-            except (PlicaError, ValueError, OSError, MemoryError) as error:
-                self.problem, self.advice = str(error) or "out of memory; use fewer cells", []
-            self.version = version
-            self._told()
-
-    def frame_message(self, want: Table) -> list[bytes]:
-        """Return shape and frame unless the page knows them."""
-        if self._built is None or self._built[0] == want.get("known"):
-            return []
-        version, shape, positions, values = self._built
-        name = want["field"]
-        head = {"kind": "frame", "slot": want["slot"], "run": 0, "index": version, "count": 1, "time_s": 0.0,
-                "shape": f"0/{version}", "field": name, "columns": [], "first_row": 0, "rows": []}
-        arrays = {"positions": positions}
-        if name in values:
-            arrays["values"] = values[name]
-            head["range"] = _core.colour_range(name, float(values[name].min()), float(values[name].max()))
-        return [shape, packed(head, arrays)]
 
 
 class Session:
@@ -107,7 +48,7 @@ class Session:
         self.runs: dict[int, StudioRun] = {}
         self.jobs: dict[str, str] = {}  # results that are being written: name, and what became of it
         self.revision = 0
-        self.rest = Rest(told)
+        self.rest, self.candidate = Rest(told, 0), Candidate(told, self.home / "candidate")
         self._restore()
 
     # State, saved and shown
@@ -153,7 +94,7 @@ class Session:
     def _draft_changed(self, save: bool = True) -> None:
         assert self.draft is not None
         self.revision += 1
-        self.rest.build(Scenario(self.draft.table))
+        self.rest.build(partial(Scenario, self.draft.table))
         if save:
             self._save()
         self.told()
@@ -162,7 +103,7 @@ class Session:
         """Return what the page shows of the draft."""
         draft = self.draft
         state: Table = {"revision": self.revision, "folder": str(self.folder), "rest": self.rest.version,
-                        "problem": self.rest.problem, "advice": self.rest.advice}
+                        "problem": self.rest.problem, "advice": self.rest.advice, "candidate": self.candidate.state()}
         if draft is not None:
             state |= {"table": draft.table, "base": draft.base, "base_table": draft.base_table, "text": draft.text(),
                       "undo": draft.place > 0, "redo": draft.place < len(draft.history) - 1}
@@ -174,6 +115,7 @@ class Session:
 
     def close(self) -> None:
         self.rest.close()
+        self.candidate.close()
         for run in self.runs.values():
             run.close()
         self._save()
@@ -212,7 +154,7 @@ class Session:
             inner[:] = sorted(name for name in inner if not name.startswith("."))
             seen += len(names)
             for path in (Path(folder) / name for name in names):
-                if path.suffix in (".toml", *TISSUES) and path.is_file() and not path.name.startswith("."):
+                if path.suffix.lower() in (".toml", *ENDINGS) and path.is_file() and not path.name.startswith("."):
                     files.append((path.stat().st_mtime, str(path.relative_to(self.folder))))
             if seen > MOST_SEEN:
                 break
@@ -224,27 +166,35 @@ class Session:
         if source in _core.scenarios:
             self.open(Draft.of(source))
             return {}
+        path = self._file(source)
+        if path.suffix != ".toml":
+            raise Refused(f"{source}: not a scenario; open a .toml file")
+        draft = Draft.of(path)
+        self._typed({key: value for key, value in draft.table.items() if key != "format"})
+        self.open(draft)
+        return {}
+
+    def _file(self, source: str) -> Path:
         path = self._inside(source)
         if not path.is_file():
             raise Refused(f"{source}: not a file of this folder; choose one of the list")
         if path.stat().st_size > MOST_FILE_BYTES:
             raise Refused(f"{source}: is larger than {MOST_FILE_BYTES // 10**6} MB; use plica run")
-        if path.suffix == ".toml":
-            draft = Draft.of(path)
-            self._typed({key: value for key, value in draft.table.items() if key != "format"})
-            self.open(draft)
-            return {}
-        problems = []
-        for shape in TISSUES.get(path.suffix, ()):
-            try:
-                table = {"format": 1, "title": path.name, "embryo": {"shape": shape, "file": str(path)}}
-                scenario = Scenario(table)
-                scenario._ready.advice()  # reads the file
-                self.open(Draft.of(scenario))
-                return {}
-            except (PlicaError, ValueError) as error:
-                problems.append(str(error))
-        raise Refused("\n".join(problems) or f"{source}: not a scenario or tissue; open .toml, {', '.join(TISSUES)}")
+        return path
+
+    def do_look_at(self, source: str, options: Optional[Table] = None) -> Table:
+        """Read a tissue file of the folder, to be shown with remarks before it is used."""
+        path = self._file(source)
+        if path.suffix.lower() not in ENDINGS:
+            raise Refused(f"{source}: not a tissue; choose a file that ends in {', '.join(ENDINGS)}")
+        self.candidate.look_at(path, options or {})
+        self.told()
+        return {}
+
+    def do_use(self) -> Table:
+        """Begin a scenario with the tissue that is shown."""
+        self.open(self.candidate.draft())
+        return {}
 
     def open(self, draft: Draft) -> None:
         if self.draft is not None:
@@ -272,8 +222,8 @@ class Session:
         self._drafted().with_changes(self._typed(changes))
         return {}
 
-    def do_set(self, changes: Table) -> Table:
-        self._drafted().set(self._typed(changes))
+    def do_set(self, changes: Table, drag: str = "") -> Table:
+        self._drafted().set(self._typed(changes), str(drag))
         self._draft_changed()
         return {"revision": self.revision}
 
@@ -413,18 +363,11 @@ class Session:
     def frame_messages(self, want: Table) -> list[bytes]:
         """Return what a page lacks of a run, or of the tissue at rest (0)."""
         number = want["run"]
-        if number == 0:
-            return self.rest.frame_message(want)
+        for still in (self.rest, self.candidate):
+            if number == still.number:
+                return still.frame_message(want)
         return self.runs[number].frame_message(want) if number in self.runs else []
 
 
 def _clock(time_s: float) -> str:
     return f"{time_s:g} s" if time_s < 120 else f"{time_s / 60:.4g} min"
-
-
-def problem_of(error: Exception) -> Table:
-    """Describe an error to the page: as a text, and by key where the scenario has one."""
-    by_key = [{"key": one.key, "text": one.problem + (f"; {one.remedy}" if one.remedy else "")}
-              for one in error.diagnostics] if isinstance(error, ScenarioError) else []
-    text = "\n".join(f"{one['key']}: {one['text']}" for one in by_key) if by_key else str(error)
-    return {"text": text or type(error).__name__, "by_key": by_key}

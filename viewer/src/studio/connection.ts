@@ -23,12 +23,25 @@ export interface SchemaTable {
   rows: KeyRow[];
 }
 
+/** Tissue file that is looked at before it is used. */
+export interface Candidate {
+  file: string;
+  kind: string;
+  kinds: string[];
+  options: { name: string; label: string; value: string; words: string[] }[];
+  remarks: string[];
+  problem: string;
+  cells: number;
+  asked: number;
+}
+
 export interface DraftState {
   revision: number;
   folder: string;
   rest: number;
   problem: string;
   advice: string[];
+  candidate: Candidate | null;
   table?: Table;
   base?: string;
   base_table?: Table | null;
@@ -87,7 +100,7 @@ export interface Listener {
   edited(): void;
 }
 
-const editing = ["open", "set", "paint", "undo", "redo"];
+const editing = ["open", "use", "set", "paint", "undo", "redo"];
 
 const patience = 800; // ms before another attempt
 

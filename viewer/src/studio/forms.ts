@@ -4,6 +4,8 @@ import { lastOf, words } from "../text";
 import { type Connection, type DraftState, type KeyRow, Problem, type SchemaTable, type Table,
   type Value } from "./connection";
 import { curveOf } from "./curve";
+import type { Shape } from "./messages";
+import { type Bounds, boundsOf, sliders } from "./slider";
 
 const checkAfter = 150; // ms without typing
 
@@ -37,19 +39,30 @@ function plain(meaning: string): string {
 export class Forms {
   private schema: SchemaTable[] = [];
   private draft: DraftState | null = null;
+  private readonly inMinutes = new Map<KeyRow, KeyRow>(); // keys in s that may be given in min, with that key
   private readonly opened = new Set<string>();
-  private readonly pending = new Map<string, string | boolean>(); // refused so far, by key
+  private readonly pending = new Map<string, string | number | boolean>(); // refused so far, by key
+  private shape: Shape | null = null; // of the tissue at rest
+  private regionSizes = new Map<string, number>();
+  private drags = 0;
+  private isDragging = false;
   private readonly list = element("div", { id: "tables" });
+  private readonly arrays = element("datalist", { id: "array-names" });
   private readonly filter = element("input", { type: "search", id: "find-key", placeholder: "Find a key",
     "aria-label": "Find a key" });
 
   constructor(holder: HTMLElement, private readonly connection: Connection) {
-    holder.append(this.filter, this.adding(), this.list);
+    holder.append(this.filter, this.adding(), this.list, this.arrays);
     this.filter.addEventListener("input", () => this.applyFilter());
   }
 
   takeSchema(tables: SchemaTable[]): void {
     this.schema = tables.filter(({ path }) => path !== "expect.*");
+    for (const { rows } of this.schema)
+      for (const row of rows) {
+        const other = rows.find((one) => one.instead_of === row.key && one.key === row.key.replace(/_s$/, "_min"));
+        if (other && row.type === "number") this.inMinutes.set(row, other);
+      }
     const kind = document.getElementById("add-kind") as HTMLSelectElement;
     kind.replaceChildren(...this.schema.filter(({ path }) => path.endsWith(".*"))
       .map(({ path, meaning }) => element("option", { value: path, title: plain(meaning) }, path.replace(".*", ""))));
@@ -60,11 +73,32 @@ export class Forms {
   show(draft: DraftState): void {
     const isSame = this.draft?.revision === draft.revision && this.list.childElementCount > 0;
     this.draft = draft;
-    if (this.schema.length === 0 || isSame) return;
+    if (this.schema.length > 0 && !isSame && !this.isDragging) this.build();
+  }
+
+  /** Take the bounds of sliders from a tissue. */
+  fit(shape: Shape, regionSizes: Map<string, number>): void {
+    this.regionSizes = regionSizes;
+    this.showSizes();
+    if (JSON.stringify([shape.box, shape.own_fields]) === JSON.stringify([this.shape?.box, this.shape?.own_fields])) return;
+    this.shape = shape;
+    this.arrays.replaceChildren(...Object.keys(shape.own_fields).map((name) => element("option", { value: name })));
+    if (this.draft && this.schema.length > 0 && !this.isDragging) this.build();
+  }
+
+  private showSizes(): void {
+    for (const size of this.list.querySelectorAll<HTMLElement>(".size")) {
+      const count = this.regionSizes.get(size.dataset.region!);
+      size.textContent = count === undefined ? "" : ` ${count} cell${count === 1 ? "" : "s"}`;
+    }
+  }
+
+  private build(): void {
     const focused = (document.activeElement as HTMLElement | null)?.dataset.key;
     this.list.replaceChildren(...this.places().map((place) => this.formOf(place)));
     if (focused) this.list.querySelector<HTMLElement>(`[data-key="${CSS.escape(focused)}"]`)?.focus();
     this.applyFilter();
+    this.showSizes();
   }
 
   private places(): Place[] {
@@ -98,7 +132,8 @@ export class Forms {
     const has = (row: KeyRow) => valueAt(values, row.key) !== undefined;
     const differs = base && rows.some(({ key }) => this.differs(prefix + key));
     details.append(element("summary", { title: plain(schema.meaning) }, name === "" ? "General" : name,
-      ...(differs ? [element("span", { class: "changed", title: `differs from ${this.draft?.base}` }, " ●")] : [])));
+      ...(differs ? [element("span", { class: "changed", title: `differs from ${this.draft?.base}` }, " ●")] : []),
+      ...(schema.path === "region.*" ? [element("span", { class: "size", "data-region": name.slice("region.".length) })] : [])));
     details.addEventListener("toggle", () => {
       if (details.open) this.opened.add(name);
       else this.opened.delete(name);
@@ -132,7 +167,7 @@ export class Forms {
 
   private field(prefix: string, row: KeyRow, values: Table): HTMLElement {
     const key = prefix + row.key;
-    const [name, unit] = words(row.key);
+    const [name, unit] = words((this.inMinutes.get(row) ?? row).key);
     const input = this.input(key, row, valueAt(values, row.key));
     const fault = element("span", { class: "fault", role: "alert" });
     const box = element("div", { class: "field" },
@@ -141,6 +176,8 @@ export class Forms {
           ...(this.draft?.base_table && this.differs(key) ? [this.reset(key)] : [])),
         input, element("span", { class: "unit" }, unit)), fault);
     this.listen(key, row, input, fault);
+    const bounds = prefix.startsWith("region.") ? boundsOf(row.key, values.array, this.shape) : null;
+    if (bounds) box.append(this.sliders(key, valueAt(values, row.key), bounds, input as HTMLInputElement, fault));
     return box;
   }
 
@@ -158,22 +195,59 @@ export class Forms {
       select.value = textOf(value);
       return select;
     }
-    const input = element("input", { type: "text", placeholder: row.allowed || row.type, autocomplete: "off",
+    const { allowed, type } = this.inMinutes.get(row) ?? row;
+    const input = element("input", { type: "text", placeholder: allowed || type, autocomplete: "off",
       spellcheck: "false", ...attributes });
-    input.value = String(this.pending.get(key) ?? textOf(value));
+    const now = this.pending.get(key) ?? value;
+    const isInMinutes = this.inMinutes.has(row) && typeof now === "number";
+    input.value = textOf(isInMinutes ? Number((now / 60).toPrecision(8)) : now);
     if (this.isRegion(row.key)) input.setAttribute("list", "region-names");
+    if (lastOf(row.key) === "array") input.setAttribute("list", "array-names");
     return input;
+  }
+
+  // One order at a time, so that the tissue follows the pointer; all of a drag are one step of undo.
+  private sliders(key: string, value: Value | undefined, bounds: Bounds, input: HTMLInputElement,
+    fault: HTMLElement): HTMLElement {
+    let next: Value | undefined;
+    let isBusy = false;
+    const drag = `${key} ${++this.drags}`;
+    const send = () => {
+      if (isBusy || next === undefined) return;
+      const changes = { [key]: next };
+      [isBusy, next] = [true, undefined];
+      this.connection.order("set", { changes, drag })
+        .then(() => (fault.textContent = ""), (problem: Problem) => (fault.textContent = problem.message))
+        .then(() => {
+          isBusy = false;
+          send();
+        });
+    };
+    return sliders(key, value, bounds, (given) => {
+      this.isDragging = true;
+      input.value = textOf(given);
+      next = given;
+      send();
+    }, () => {
+      this.isDragging = false;
+      if (!isBusy) this.build();
+    });
   }
 
   private isRegion(key: string): boolean {
     return ["region", "about", "from", "neighbours_of"].includes(lastOf(key));
   }
 
-  private listen(key: string, _row: KeyRow, input: HTMLInputElement | HTMLSelectElement, fault: HTMLElement): void {
-    const value = () => (input instanceof HTMLInputElement && input.type === "checkbox" ? input.checked : input.value);
+  private listen(key: string, row: KeyRow, input: HTMLInputElement | HTMLSelectElement, fault: HTMLElement): void {
+    const value = () => {
+      if (input instanceof HTMLInputElement && input.type === "checkbox") return input.checked;
+      const minutes = this.inMinutes.has(row) && input.value.trim() !== "" ? Number(input.value) : NaN;
+      return Number.isFinite(minutes) ? Number((60 * minutes).toPrecision(12)) : input.value;
+    };
+    const seconds = this.inMinutes.has(row) ? " (in seconds)" : "";
     const tell = (problem: unknown) => {
       const texts = problem instanceof Problem ? (problem.byKey.length > 0 ? problem.byKey.map((one) =>
-        one.key === key || one.key === "" ? one.text : `${one.key}: ${one.text}`) : [problem.message]) : [];
+        one.key === key || one.key === "" ? one.text + seconds : `${one.key}: ${one.text}`) : [problem.message]) : [];
       fault.textContent = texts.join("\n");
       input.setAttribute("aria-invalid", String(texts.length > 0));
     };

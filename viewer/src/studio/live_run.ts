@@ -54,6 +54,10 @@ export class LiveTopology extends Topology {
     return [...this.members.keys()];
   }
 
+  get regionSizes(): Map<string, number> {
+    return new Map([...this.members].map(([name, { size }]) => [name, size]));
+  }
+
   /** Show a painted region at once, before the server has built the tissue with it. */
   setRegion(name: string, members: ReadonlySet<number>): void {
     this.members.set(name, new Set(members));

@@ -9,7 +9,8 @@ import { RunLooks } from "../run_looks";
 import { State } from "../state";
 import { time as timeText } from "../text";
 import { followTheme } from "../theme";
-import { Connection, type DraftState, Problem, type RunsState, type Table } from "./connection";
+import { CandidatePanel, candidateRun } from "./candidate";
+import { type Candidate, Connection, type DraftState, Problem, type RunsState, type Table } from "./connection";
 import { Forms } from "./forms";
 import { LiveRun, LiveTopology } from "./live_run";
 import { type Frame, type Message, rangeOf, type Shape } from "./messages";
@@ -50,7 +51,10 @@ class Studio {
   private readonly time: TimeBar;
   private tools!: ToolsBar;
   private readonly start: Start;
+  private readonly candidate: CandidatePanel;
+  private candidateState: Candidate | null = null;
   private hasNoPicture = false;
+  private hasDraft = false;
   private lastField = "region";
 
   constructor() {
@@ -90,7 +94,14 @@ class Studio {
         this.ask();
       },
     });
-    this.start = new Start(this.connection);
+    this.start = new Start(this.connection, this.token, (source) => {
+      this.candidate.lookAt(source);
+      this.choose({ run: candidateRun });
+    });
+    this.candidate = new CandidatePanel(byId("candidate"), this.connection, (problem) => this.tell(problem), () => {
+      this.choose({ run: 0 });
+      if (!this.hasDraft) void this.start.open();
+    });
     this.listen();
     this.state.on(["field"], () => this.fieldChanged());
     const tick = (now: number) => {
@@ -123,12 +134,14 @@ class Studio {
   }
 
   private async go(untilS: number | null): Promise<void> {
+    if (this.chosen.run === candidateRun) return this.tell("This tissue is not used yet; choose Use this tissue.");
     if (this.chosen.run !== 0) return void this.order("go", { run: this.chosen.run, until_s: untilS });
     const made = await this.order("start", { until_s: untilS });
     if (made) this.choose({ run: made.run as number });
   }
 
   private async step(): Promise<void> {
+    if (this.chosen.run === candidateRun) return this.go(null);
     if (this.chosen.run !== 0) return void this.order("step", { run: this.chosen.run });
     const made = await this.order("start", { until_s: 0 });
     if (!made) return;
@@ -157,7 +170,10 @@ class Studio {
     byId("take-scenario").setAttribute("href", `/take/0/scenario.toml?token=${encodeURIComponent(this.token)}`);
     byId("take-script").setAttribute("href", `/take/0/run.py?token=${encodeURIComponent(this.token)}`);
     this.forms.show(draft);
-    if (!draft.table) void this.start.open();
+    this.candidateState = draft.candidate;
+    this.hasDraft = draft.table !== undefined;
+    this.showCandidate();
+    if (!draft.table && this.chosen.run === 0) void this.start.open();
     this.ask();
   }
 
@@ -168,8 +184,8 @@ class Studio {
   }
 
   private takeShape({ head, arrays }: Message<Shape>): void {
-    if (head.shape.startsWith("0/"))
-      for (const name of this.shapes.keys()) if (name.startsWith("0/")) this.shapes.delete(name);
+    const stem = /^(0|-1)\//.exec(head.shape)?.[0]; // of a tissue at rest, which no later frame shows again
+    if (stem) for (const name of this.shapes.keys()) if (name.startsWith(stem)) this.shapes.delete(name);
     this.shapes.set(head.shape, new LiveTopology(head, arrays));
   }
 
@@ -197,6 +213,7 @@ class Studio {
   private takeTopology(before: LiveTopology | null, topology: LiveTopology): void {
     const { shape } = topology;
     this.tools?.showRegions(topology.regionNames);
+    if (this.chosen.run === 0) this.forms.fit(shape, topology.regionSizes);
     const own = Object.entries(shape.own_fields).map(([name, range]): Field => (
       { name, label: name, unit: "", on_nodes: false, scale: "from-zero", map: "from_zero", ...rangeOf(range) }));
     this.page.fields = [...this.known, ...own, difference];
@@ -252,7 +269,7 @@ class Studio {
   private choose(chosen: Partial<Chosen>): void {
     const before = { ...this.chosen };
     Object.assign(this.chosen, chosen);
-    if (this.chosen.beside === this.chosen.run || this.chosen.run === 0) this.chosen.beside = null;
+    if (this.chosen.beside === this.chosen.run || this.chosen.run <= 0) this.chosen.beside = null;
     if (before.run !== this.chosen.run) {
       this.at = null;
       this.time.follow();
@@ -264,8 +281,9 @@ class Studio {
       this.runs[1].shown = null;
       this.frameShown[1] = -1;
     }
-    if (before.run === 0 && this.chosen.run !== 0 && this.state.now.field.name === "region") this.colour("area-ratio");
-    if (this.chosen.run === 0 && before.run !== 0) this.colour("region");
+    if (before.run <= 0 && this.chosen.run > 0 && this.state.now.field.name === "region") this.colour("area-ratio");
+    if (this.chosen.run <= 0 && before.run > 0) this.colour("region");
+    this.showCandidate();
     this.state.set({ shown: new Set(this.chosen.beside === null ? [0] : [0, 1]) });
     this.nameRuns();
     this.panel.refresh();
@@ -273,9 +291,17 @@ class Studio {
     this.ask();
   }
 
+  private showCandidate(): void {
+    const isChosen = this.chosen.run === candidateRun;
+    this.candidate.show(this.candidateState, isChosen);
+    document.body.classList.toggle("looking", isChosen);
+    byId("canvases").classList.toggle("unread", isChosen && !this.candidateState?.cells);
+  }
+
   private nameRuns(): void {
     for (const [slot, run] of this.runs.entries()) {
-      const label = this.panel.run(this.wanted(slot) ?? 0)?.title ?? "At rest";
+      const wanted = this.wanted(slot) ?? 0;
+      const label = this.panel.run(wanted)?.title ?? (wanted === candidateRun ? "Not used yet" : "At rest");
       if (label === run.label) continue;
       run.label = label;
       this.views?.refresh();
@@ -372,7 +398,7 @@ class Studio {
 
   private showTime(): void {
     const run = this.panel.run(this.chosen.run);
-    const shown = this.chosen.run === 0 ? 0 : this.runs[0].time;
+    const shown = this.chosen.run <= 0 ? 0 : this.runs[0].time;
     this.time.show(run, shown);
     this.tools?.showActs(run ? timeText(Number(shown.toPrecision(4))) : null, run?.lasting ?? []);
     const failed = byId("failure");
@@ -394,7 +420,7 @@ class Studio {
     this.chartRows = rows;
     this.chartsAt = now;
     for (const chart of this.charts) chart.destroy();
-    this.charts = this.chosen.run === 0 ? [] : seriesCharts(runs.filter(({ series }) => series.rows.length > 1),
+    this.charts = this.chosen.run <= 0 ? [] : seriesCharts(runs.filter(({ series }) => series.rows.length > 1),
       this.looks)
       .map((content) => new TimeChart(content, this.state));
     byId("plots").replaceChildren(...this.charts.map(({ box }) => box));
