@@ -274,9 +274,9 @@ TEST(ForcesOfCells, AreThoseOfThePresentModel) {
   Monitor kept = monitor_of("force", "all");
   kept.from = "left";
   const auto expect_as_anew = [&](const Model& now) {
-    Monitor anew = monitor_of("force", "all");
-    anew.from = "left";
-    EXPECT_EQ(read_monitor(kept, {now, state}).values, read_monitor(anew, {now, state}).values);
+    Monitor rebuilt = monitor_of("force", "all");
+    rebuilt.from = "left";
+    EXPECT_EQ(read_monitor(kept, {now, state}).values, read_monitor(rebuilt, {now, state}).values);
     EXPECT_TRUE(kept.apart->are_of(now));
   };
   for (int step = 0; step < 3; ++step) {
