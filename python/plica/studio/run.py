@@ -119,8 +119,8 @@ class StudioRun:
             with self._order:
                 while not self._closing and self._steps_left == 0 and self._goal_s <= self.time_s:
                     if self.status != "paused":
-                        self.status = "paused"
                         self._show(sim, force=True)
+                        self.status = "paused"  # from now on, the last frame is that of the last step
                         self._told()
                     self._order.wait()
                 if self._closing:
