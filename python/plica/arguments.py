@@ -138,6 +138,23 @@ def numbers(values: Any, what: str, fits: str, masked_is_none: bool = False) -> 
     return np.array(array, dtype=np.float64)
 
 
+def three(values: Any, what: str, fits: str) -> NDArray[np.float64]:
+    """Return three finite numbers."""
+    array = numbers(values, what, fits)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise ValueError(f"{what}: {values!r:.60}; give {fits}")
+    return array
+
+
+def voxel_spacing(spacing_um: Any) -> NDArray[np.float64]:
+    """Return the distances of planes, rows and columns of a volume."""
+    fits = "three numbers above 0: distances of planes, rows and columns, in µm"
+    spacing = three(spacing_um, "spacing_um", fits)
+    if not (spacing > 0).all():
+        raise ValueError(f"spacing_um: {spacing_um!r:.60}; give {fits}")
+    return spacing
+
+
 def integers(values: Any, what: str) -> NDArray[np.int32]:
     """Return whole numbers of 32 bits as an array."""
     try:

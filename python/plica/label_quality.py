@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import needed
+from .hexahedra import scaled_jacobians
 from .prisms import PrismTissue
 from .voxel_sides import FIRST, SECOND, Floats
 from .voxel_surfaces import RIM
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 __all__ = ["LabelQuality", "LabelledTissue"]
 
 LEAST_WALL = 0.02    # of a usual wall between labels: smaller ones are points
-CORNERS = ((0, 1, 3, 4), (1, 2, 0, 5), (2, 3, 1, 6), (3, 0, 2, 7), (4, 7, 5, 0), (5, 4, 6, 1), (6, 5, 7, 2), (7, 6, 4, 3))
 
 
 class LabelQuality:
@@ -108,17 +108,6 @@ class LabelledTissue(PrismTissue):
             axes.add_collection(needed("matplotlib.collections", "a figure").LineCollection(lines, colors="k", linewidths=0.6))
             axes.set(title=f"{'zyx'[axis]} = {plane * spacing[axis]:.4g} µm", xlabel=f"{'zyx'[rest[1]]} (µm)", ylabel=f"{'zyx'[rest[0]]} (µm)")
         return figure  # type: ignore[no-any-return]
-
-
-def scaled_jacobians(points: NDArray[np.float64], hexahedra: NDArray[Any]) -> NDArray[np.float64]:
-    """Return the least scaled Jacobian of each hexahedron: over corners, of the unit vectors along its three edges there."""
-    corners = points[hexahedra]
-    least = np.full(len(hexahedra), np.inf)
-    for at, *ends in CORNERS:
-        ways = corners[:, ends] - corners[:, [at]]
-        ways /= np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), 1e-300)
-        least = np.minimum(least, np.linalg.det(ways))
-    return least
 
 
 def measured_quality(tissue: PrismTissue, layer: Layer, labels: Labels, spacing: Floats, contacts: dict[tuple[int, int], float],

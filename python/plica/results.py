@@ -11,13 +11,14 @@ import xml.etree.ElementTree as xml
 import zlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Union, overload
+from typing import TYPE_CHECKING, Any, Optional, Union, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .arguments import number, path_of, texts_of, told, whole
+from .arguments import number, path_of, texts_of, three, told, voxel_spacing, whole
 from .errors import FileError, needed
+from .frame_labels import LabelVolume, voxels_of
 from .names import label
 from .polygons import Polygons
 from .scenario import Scenario
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     import pandas
 
 __all__ = ["Run", "Frame", "Frames", "open_run"]
+
+LARGEST_SIDE = 100_000  # of a volume of labels, voxels
+
 
 def _pandas(what: str) -> Any:
     return needed("pandas", what)
@@ -110,6 +114,45 @@ class Frame:
         used, corners = np.unique(nodes.ravel(), return_inverse=True)
         values = {name: array[elements] for name, array in self.cell_data.items()}
         return Polygons(self.points[used], np.split(corners, ends[:-1]), values)
+
+    def labels(self, spacing_um: Sequence[float], *, shape: Optional[Sequence[int]] = None, origin_um: Optional[Sequence[float]] = None) -> LabelVolume:
+        """Return the cells as a volume of labels.
+
+        Parameters
+        ----------
+        spacing_um : (float, float, float)
+            Distances of planes (z), rows (y) and columns (x), µm.
+        shape : (int, int, int), optional
+            Planes, rows and columns; by default as many as the cells need. Cells outside are cut.
+        origin_um : (float, float, float), optional
+            Centre of the first voxel, z, y, x; by default 0 if `shape` is given, as in `plica.tissue_of_labels`, else below all cells.
+
+        Returns
+        -------
+        LabelVolume
+            ``labels``, ``origin_um`` and ``spacing_um``. A cell has its ``label``, or where cells have no such array or daughters share
+            one, its ``cell_id`` + 1.
+
+        Raises
+        ------
+        ValueError
+            If a spacing is not above 0, or an argument has not three numbers.
+        """
+        spacing = voxel_spacing(spacing_um)
+        low, high = self.points.min(axis=0)[::-1], self.points.max(axis=0)[::-1]
+        usual = np.zeros(3) if shape is not None else low - spacing
+        origin = usual if origin_um is None else three(origin_um, "origin_um", "three numbers: z, y, x of the first voxel, in µm")
+        size = np.maximum(np.ceil((high - origin) / spacing) + 2, 1)
+        if shape is not None:
+            size = three(shape, "shape", "three whole numbers: planes, rows, columns")
+        planes, rows, columns = (whole(int(one), "shape", 1, LARGEST_SIDE) for one in size)
+        identity = self.cell_data["cell_id"].astype(np.int64)
+        given = self.cell_data.get("label")
+        names = identity + 1
+        if given is not None and (given >= 1).all() and len(np.unique(given)) == len(np.unique(identity)):
+            names = given.astype(np.int64)
+        volume = voxels_of(self.points, self.hexahedra, names, spacing, origin, (planes, rows, columns))
+        return LabelVolume(volume, (origin[0], origin[1], origin[2]), (spacing[0], spacing[1], spacing[2]))
 
     def to_meshio(self) -> Any:
         """Return the snapshot as a ``meshio.Mesh``."""
@@ -220,6 +263,11 @@ class Run:
     def frames(self) -> Frames:
         """Snapshots saved as meshes."""
         return Frames(self.directory)
+
+    def labels(self, time_min: float, spacing_um: Sequence[float], *, shape: Optional[Sequence[int]] = None,
+               origin_um: Optional[Sequence[float]] = None) -> LabelVolume:
+        """Return the snapshot nearest to a time in minutes as a volume of labels; see `Frame.labels`."""
+        return self.frames.at(time_min).labels(spacing_um, shape=shape, origin_um=origin_um)
 
     @property
     def summary(self) -> dict[str, Any]:

@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Iterable
 from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import number, number_from
+from .arguments import number, number_from, voxel_spacing
 from .label_quality import LabelledTissue, measured_quality
 from .label_files import read_labels
 from .polygons import check_keep
@@ -16,7 +17,7 @@ from .voxel_labels import Labels, numbered_volume
 from .voxel_layer import Layer, layer_of
 from .voxel_repair import repaired_labels
 from .voxel_sides import FIRST, SECOND, Floats, sides_of
-from .voxel_surfaces import RIM, Integers, face_places, steps_of
+from .voxel_surfaces import RIM, Integers, components, face_places, steps_of
 
 __all__ = ["tissue_of_labels"]
 
@@ -86,7 +87,7 @@ def tissue_of_labels(
     if isinstance(volume, (str, os.PathLike)):
         volume, found = read_labels(volume)
         spacing_um = found if spacing_um is None else spacing_um
-    spacing = _spacing(spacing_um)
+    spacing = voxel_spacing(spacing_um)
     number(background, "background", "one label")
     gap_px = number_from(gap_px, 0, "gap_px", "a width in voxels, 0 or more")
     check_keep(keep)
@@ -109,15 +110,6 @@ def tissue_of_labels(
     for remark in tissue.remarks:
         warnings.warn(f"volume: {remark}", stacklevel=2)
     return tissue
-
-
-def _spacing(spacing_um: Any) -> Floats:
-    fits = "three numbers above 0: distances of planes, rows and columns, in µm"
-    try:
-        planes, rows, columns = spacing_um
-    except (TypeError, ValueError):
-        raise ValueError(f"spacing_um: {spacing_um!r:.60}; give {fits}") from None
-    return np.array([number_from(one, 0, "spacing_um", fits, above=True) for one in (planes, rows, columns)])
 
 
 def _marker(apical: Any, volume: Any) -> NDArray[Any]:
@@ -224,6 +216,10 @@ def _kept(layer: Layer, labels: Labels, keep: str) -> list[int]:
         cell = labels.names[pieces[1][0] - 1]
         raise ValueError(f"volume: the tissue is in {len(pieces)} pieces, which share no wall, of {sizes} cells (cell {cell} is in the second); "
                          "keep = \"largest\" omits all but the first, or raise gap_px")
+    flawed = sorted({*layer.flawed} & {*pieces[0]})
+    if flawed:
+        raise ValueError(f"volume: {_cells(flawed, labels)} are no prisms between their neighbours, which surround them or lie inside them; "
+                         "correct these labels, or make them background")
     return sorted(pieces[0])
 
 
@@ -238,21 +234,15 @@ def _edges(layer: Layer, kept: list[int]) -> dict[frozenset[int], list[int]]:
 
 def _pieces(layer: Layer, kept: list[int]) -> list[list[int]]:
     """Return the cells of each piece, the largest first."""
-    beside: dict[int, set[int]] = {cell: set() for cell in kept}
-    for cells in _edges(layer, kept).values():
-        for cell in cells:
-            beside[cell] |= {*cells}
-    pieces, left = [], set(kept)
-    while left:
-        piece, reached = set(), [min(left)]
-        while reached:
-            cell = reached.pop()
-            if cell not in piece:
-                piece.add(cell)
-                reached += beside[cell] - piece
-        pieces.append(sorted(piece))
-        left -= piece
-    return sorted(pieces, key=len, reverse=True)
+    walls = [(cells[0], other) for cells in _edges(layer, kept).values() for other in cells[1:]]
+    return sorted(_joined(kept, walls), key=len, reverse=True)
+
+
+def _joined(things: Iterable[int], pairs: list[tuple[int, int]]) -> list[list[int]]:
+    """Return the groups of things that pairs connect, each in order."""
+    names, rows = np.array(sorted(things), dtype=np.int64), np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    group = components(*np.searchsorted(names, rows).T, len(names)) if len(names) else names
+    return [names[group == number].tolist() for number in range(int(group.max(initial=-1)) + 1)]
 
 
 def _tissue(layer: Layer, labels: Labels, spacing: Floats, volumes: Floats, kept: list[int], first_is_apical: bool) -> LabelledTissue:
@@ -288,7 +278,7 @@ def _tell(tissue: LabelledTissue, layer: Layer, labels: Labels, volumes: Floats,
         labels.remarks.append(f"{_cells(lopsided, labels)} do not reach both sides; their corners there follow their neighbours'")
     moved = sorted({*layer.evened} & {*kept})
     if moved:
-        labels.remarks.append(f"{_cells(moved, labels)} would have been turned over on a side: their corners there were evened out")
+        labels.remarks.append(f"{_cells(moved, labels)} had flat or turned corners, which were evened out")
     pairs = one_sided_pairs(layer, kept)
     if pairs:
         named = ", ".join(" and ".join(str(labels.names[cell - 1]) for cell in pair) for pair in pairs[:3])
@@ -298,8 +288,6 @@ def _tell(tissue: LabelledTissue, layer: Layer, labels: Labels, volumes: Floats,
         place = layer.middle[loop].mean(axis=0) / layer.spacing
         labels.remarks.append(f"an opening of {len(loop)} edges in the layer, at {labels.where(np.round(place).astype(np.int64))}; "
                               "label missing cells, or leave it open")
-
-
 
 
 def _cells(cells: list[int], labels: Labels) -> str:
@@ -323,21 +311,7 @@ def one_sided_pairs(layer: Layer, kept: list[int]) -> list[tuple[int, int]]:
 
 def _openings(layer: Layer, kept: list[int]) -> list[list[int]]:
     """Return the columns around openings as small as missing cells leave."""
-    beside: dict[int, list[int]] = {}
-    for edge, cells in _edges(layer, kept).items():
-        if len(cells) == 1:
-            one, other = edge
-            beside.setdefault(one, []).append(other)
-            beside.setdefault(other, []).append(one)
-    loops, left = [], set(beside)
-    while left:
-        loop, reached = set(), [min(left)]
-        while reached:
-            column = reached.pop()
-            if column not in loop:
-                loop.add(column)
-                reached += beside[column]
-        loops.append(sorted(loop))
-        left -= loop
+    free = [(min(edge), max(edge)) for edge, cells in _edges(layer, kept).items() if len(cells) == 1]
+    loops = _joined({column for edge in free for column in edge}, free)
     reach = [np.linalg.norm(layer.middle[loop] - layer.middle[loop].mean(axis=0), axis=1).mean() for loop in loops]
     return [loop for loop, far in zip(loops, reach) if far < OPENING * layer.width]

@@ -8,14 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import needed
+from .hexahedra import scaled_jacobians
 from .voxel_sides import LATERAL, Floats, Sides
 from .voxel_surfaces import RIM, Faces, Integers, Meetings, steps_of
 
 FIT_RADIUS = 0.3     # of the width of a cell: planes are fitted to faces up to this far from a corner
 FARTHEST_FIT = 2.5   # voxels between a corner and the mean of its voxels; farther, the fit is wrong
 THIN_FIT = 0.15      # of the radius: narrower walls count less
-LEAST_FAN = 0.03     # of a usual part of a polygon about its middle, at the middle height
-MOST_EVENINGS = 30
+LEAST_JACOBIAN = 0.15  # scaled, of the kites of which cells are made
+MOST_EVENINGS = 100
+EVENING = 0.2        # of the way to an even polygon, at a time
+LIKE_MIDDLE = 0.1    # part of the polygon of the middle height in an even one
 SETTLING = 0.4      # weight of corners' moves beside the gaps between polygons and labels
 CHUNK = 3_000_000    # voxels about corners that are read at once
 
@@ -185,42 +188,101 @@ def extended(places: Floats, middles: Floats, joined: Integers) -> Floats:
     return middles + ways
 
 
-def evened(places: Floats, middles: Floats, rings: dict[int, list[int]]) -> tuple[Floats, list[int]]:
-    """Return places of which no polygon is turned over, and the cells whose corners moved for that.
+class Evened(NamedTuple):
+    """Places of corners on both sides, the cells that moved for that, and those that are no upright prism nevertheless."""
 
-    Ways from the middle are averaged over neighbouring corners, so that polygons become more like those of the middle height.
+    first: Floats
+    second: Floats
+    moved: list[int]
+    flawed: list[int]
+
+
+def evened(first: Floats, second: Floats, middles: Floats, rings: dict[int, list[int]]) -> Evened:
+    """Return places between which each cell is an upright prism of convex polygons.
+
+    Polygons of flawed cells become more like regular, stretched ones, and like those of the middle height.
     """
-    ways = places - middles
-    turned = [cell for cell, ring in rings.items() if _is_turned((middles + ways)[ring], middles[ring])]
-    moved = set(turned)
+    sides = [first.copy(), second.copy()]
+    kites = _Kites(rings)
+    moved: set[int] = set()
     for _ in range(MOST_EVENINGS):
-        if not turned:
+        flawed = kites.least_jacobians(*sides, middles) < LEAST_JACOBIAN
+        if not flawed.any():
             break
-        sums, number = np.zeros_like(ways), np.zeros(len(ways))
-        for cell in turned:
-            ring = np.array(rings[cell])
-            for shift in (-1, 0, 1):
-                np.add.at(sums, ring, ways[np.roll(ring, shift)])
-                np.add.at(number, ring, 1)
-        ways[number > 0] = sums[number > 0] / number[number > 0, None]
-        changed = set(np.flatnonzero(number > 0).tolist())
-        turned = [cell for cell, ring in rings.items() if not changed.isdisjoint(ring) and _is_turned((middles + ways)[ring], middles[ring])]
-        moved |= {*turned}
-    return middles + ways, sorted(moved)
+        moved |= {*kites.cells[flawed].tolist()}
+        chosen = flawed[kites.of]
+        corners = kites.corner[chosen]
+        number = np.bincount(corners, minlength=len(middles))
+        usual = kites.stretched(middles)
+        for side in sides:
+            target = kites.means(side)[kites.of] + (1 - LIKE_MIDDLE) * kites.stretched(side) + LIKE_MIDDLE * usual
+            mean = np.column_stack([np.bincount(corners, weights=along, minlength=len(middles)) for along in target[chosen].T])
+            mean[number > 0] /= number[number > 0, None]
+            side[number > 0] += EVENING * (mean - side)[number > 0]
+    left = kites.least_jacobians(*sides, middles) <= 0
+    return Evened(sides[0], sides[1], sorted(moved), kites.cells[left].tolist())
 
 
-def _is_turned(corners: Floats, middles: Floats) -> bool:
-    """Return whether a part of a polygon, about its middle, is turned over, or all nearly has no area beside that of the middle height.
+class _Kites:
+    """Corners of all polygons in one row, with the corners beside them: prisms of kites about each."""
 
-    Parts at short edges may be turned a little: the edges are lengthened when cells are made.
-    """
-    fans = []
-    for polygon in (corners, middles):
-        spokes = polygon - polygon.mean(axis=0)
-        fans.append(np.cross(spokes, np.roll(spokes, -1, axis=0)))
-    normal = fans[1].sum(axis=0)
-    areas, usual = fans[0] @ normal, float(normal @ normal) / len(middles)
-    return bool(areas.min() < -LEAST_FAN * usual or areas.mean() < LEAST_FAN * usual)
+    def __init__(self, rings: dict[int, list[int]]) -> None:
+        self.cells = np.array(sorted(rings))
+        self.sizes = np.array([len(rings[cell]) for cell in self.cells.tolist()])
+        self.of = np.repeat(np.arange(len(self.cells)), self.sizes)
+        self.corner = np.concatenate([rings[cell] for cell in self.cells.tolist()])
+        start = (np.cumsum(self.sizes) - self.sizes)[self.of]
+        self.place = np.arange(len(self.of)) - start
+        self.after = start + (self.place + 1) % self.sizes[self.of]
+        self.before = start + (self.place - 1) % self.sizes[self.of]
+
+    def means(self, places: Floats) -> Floats:
+        """Return the means of the corners of each polygon."""
+        return np.column_stack([np.bincount(self.of, weights=along) for along in places[self.corner].T]) / self.sizes[:, None]
+
+    def stretched(self, places: Floats) -> Floats:
+        """Return corners, from the middle of each polygon, of the nearest stretched regular polygon: the first waves around it."""
+        angle = 2 * np.pi * self.place / self.sizes[self.of]
+        spokes = places[self.corner] - self.means(places)[self.of]
+        found = np.zeros_like(spokes)
+        for wave in (np.cos(angle), np.sin(angle)):
+            part = np.column_stack([np.bincount(self.of, weights=wave * along) for along in spokes.T]) * (2 / self.sizes[:, None])
+            found += wave[:, None] * part[self.of]
+        return found
+
+    def least_jacobians(self, first: Floats, second: Floats, middles: Floats) -> Floats:
+        """Return the least scaled Jacobian of the prisms of kites of each cell."""
+        levels = []
+        for side in (first, second):
+            corner = side[self.corner]
+            levels.append((self.means(side)[self.of], (corner + corner[self.before]) / 2, corner, (corner + corner[self.after]) / 2))
+        points = np.concatenate([*levels[0], *levels[1]])
+        spokes = middles[self.corner] - self.means(middles)[self.of]
+        area = np.cross(spokes, spokes[self.after])
+        up = self.means(second) - self.means(first)
+        sign = np.sign((np.column_stack([np.bincount(self.of, weights=along) for along in area.T]) * up).sum(axis=1))
+        nodes = np.arange(8) * len(self.of) + np.arange(len(self.of))[:, None]
+        swapped = np.where(sign[self.of, None] > 0, nodes, nodes[:, [0, 3, 2, 1, 4, 7, 6, 5]])
+        least = np.full(len(self.cells), np.inf)
+        np.minimum.at(least, self.of, scaled_jacobians(points, swapped))
+        return least
+
+
+def without_idle(rings: dict[int, list[int]]) -> dict[int, list[int]]:
+    """Return rings without corners along the common edge of two cells, where both polygons cannot be convex."""
+    rings = {cell: list(ring) for cell, ring in rings.items()}
+    users: dict[int, list[int]] = {}
+    for cell, ring in rings.items():
+        for column in ring:
+            users.setdefault(column, []).append(cell)
+    for column, cells in users.items():
+        both = [rings[cell] for cell in cells]
+        at = [ring.index(column) for ring in both]
+        beside = [{ring[place - 1], ring[(place + 1) % len(ring)]} for ring, place in zip(both, at)]
+        if len(cells) == 2 and beside[0] == beside[1] and min(map(len, both)) > 3:
+            for ring, place in zip(both, at):
+                ring.pop(place)
+    return rings
 
 
 def ring_of(arcs: list[tuple[int, int, int]]) -> list[int]:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import needed
-from .voxel_columns import counterparts, evened, extended, fitted_corners, parted_meetings, ring_of, settled
+from .voxel_columns import counterparts, evened, extended, fitted_corners, parted_meetings, ring_of, settled, without_idle
 from .voxel_sides import FIRST, SECOND, Floats, Halfway, Sides
 from .voxel_surfaces import RIM, Meetings, face_places, meetings_of, places_of, steps_of
 
@@ -23,7 +23,8 @@ class Layer(NamedTuple):
     fitted: NDArray[np.bool_]       # by column: whether labels have its corners on both sides
     cells: list[frozenset[int]]     # that meet at each column
     rings: dict[int, list[int]]
-    evened: list[int]               # cells whose polygons would have been turned over
+    evened: list[int]               # cells whose corners were moved, to make upright prisms
+    flawed: list[int]               # cells that are none nevertheless
     sides: Sides
     meetings: dict[int, Meetings]   # by side; 0: halfway
     width: float                    # of a usual cell, µm
@@ -46,18 +47,17 @@ def layer_of(numbers: NDArray[Any], sides: Sides, spacing: Floats, volumes: Floa
     meetings = {side: parted_meetings(meetings_of(faces, numbers.shape, spacing), contacts)
                 for side, faces in ((0, halfway), *((side, sides.faces.select(sides.side == side)) for side in (FIRST, SECOND)))}
     columns, rings, bends = _rings(meetings[0], cells, numbers.shape, spacing, width)
+    rings = without_idle(rings)
     middle = np.concatenate([meetings[0].place, [bend.place for bend in bends]]) if bends else meetings[0].place
     places = [_on_side(side, numbers, spacing, sides, meetings, columns, bends, middle, width) for side in (FIRST, SECOND)]
     joined = np.array([pair for ring in rings.values() for pair in zip(ring, ring[1:] + ring[:1])], dtype=np.int64).reshape(-1, 2)
     fitted: NDArray[np.bool_] = np.logical_and.reduce(np.isfinite(np.hstack(places)), axis=1)
     middles = face_places(sides.faces, numbers.shape, spacing)
-    moved: set[int] = set()
     for number, side in enumerate((FIRST, SECOND)):
         of = sides.side == side
-        whole = settled(extended(places[number], middle, joined), rings, sides.faces.select(of), middles[of], sides.normals[of])
-        places[number], cells_moved = evened(whole, middle, rings)
-        moved |= {*cells_moved}
-    return Layer(places[0], places[1], middle, fitted, columns, rings, sorted(moved), sides, meetings, width, height, spacing)
+        places[number] = settled(extended(places[number], middle, joined), rings, sides.faces.select(of), middles[of], sides.normals[of])
+    even = evened(*places, middle, rings)
+    return Layer(even.first, even.second, middle, fitted, columns, rings, even.moved, even.flawed, sides, meetings, width, height, spacing)
 
 
 class _Bend(NamedTuple):

@@ -35,6 +35,32 @@ def test_frames(run):
     assert "elements" in repr(frame) and "Frames" in repr(frames)
 
 
+def test_frames_as_labels(tmp_path):
+    """Voxels of cells: their numbers, places and volumes, in a sheet of hexagons whose elements fill it."""
+    sheet = {"embryo": {"shape": "sheet", "length_um": 20, "width_um": 20, "cell_count": 12, "cell_height_um": 6},
+             "region": {"middle": {"y_um": [-4, 4]}}, "cortex": {"pull": {"region": "middle", "tension_mN_per_m": 0.3}}, "time": {"end_s": 2}}
+    run = plica.Simulation(plica.Scenario(sheet)).run(out=tmp_path / "flat")
+    frame = run.frames[-1]
+    volume = run.labels(1, (0.2, 0.25, 0.25))
+    names, number = np.unique(volume.labels, return_counts=True)
+    assert names.tolist() == [*range(13)]
+    of_cell = dict(zip(frame.cell_data["cell_id"].astype(int), frame.cell_data["volume_um3"]))
+    assert number[1:] * 0.0125 == pytest.approx([of_cell[cell] for cell in range(12)], rel=0.03)
+    assert volume.labels.sum() > 0 == volume.labels[0].sum() == volume.labels[:, :, -1].sum()  # a margin
+    cell = int(np.argmax(frame.points[frame.hexahedra].mean(axis=1)[:, 0]))  # at the end along x
+    place = np.argwhere(volume.labels == frame.cell_data["cell_id"][cell] + 1).mean(axis=0) * volume.spacing_um + volume.origin_um
+    middle = frame.points[frame.hexahedra[frame.cell_data["cell_id"] == frame.cell_data["cell_id"][cell]]].mean(axis=(0, 1))
+    assert place[::-1] == pytest.approx(middle, abs=0.7)
+    part = frame.labels((0.2, 0.25, 0.25), shape=(10, 20, 30))
+    assert part.origin_um == (0, 0, 0) and part.labels.shape == (10, 20, 30)
+    same = frame.labels((0.2, 0.25, 0.25), shape=volume.labels.shape, origin_um=volume.origin_um)
+    assert np.array_equal(same.labels, volume.labels)
+    for how, said in (({"spacing_um": (1, 0, 1)}, "spacing_um"), ({"spacing_um": 1}, "spacing_um"), ({"shape": (0, 1, 1)}, "shape"),
+                      ({"origin_um": (0, np.nan, 0)}, "origin_um")):
+        with pytest.raises(ValueError, match=said):
+            frame.labels(**{"spacing_um": (1, 1, 1), **how})
+
+
 def test_words_fit_the_tissue(tmp_path):
     sheet = {"embryo": {"shape": "sheet", "length_um": 40, "width_um": 40, "cell_count": 30, "cell_height_um": 10},
              "region": {"middle": {"y_um": [-8, 8]}}, "cortex": {"pull": {"region": "middle", "tension_mN_per_m": 0.3}}, "time": {"end_s": 2}}

@@ -10,6 +10,7 @@ import numpy as np
 import plica
 import pytest
 from drawn_tissues import Cyst, Tube, disagreement, pairs_of
+from plica.voxel_columns import evened, without_idle
 
 pytest.importorskip("scipy")
 HALF = (0.5, 0.5, 0.5)
@@ -87,6 +88,7 @@ def test_cells_have_their_numbers():
     ("cut", "sheet", HALF, "cut by the border of the image and were omitted"),
     ("lower", "cyst", HALF, None),
     ("rough_walls", "cyst", damaged_volumes.FLAT, None),
+    ("missing", "sheet", damaged_volumes.FLAT, "flat or turned corners, which were evened out"),
 ])
 def test_damage_is_repaired_and_reported(damage, kind, spacing, said):
     labels, _, drawing = drawn(kind, spacing)
@@ -101,6 +103,30 @@ def test_damage_is_repaired_and_reported(damage, kind, spacing, said):
     assert tissue.quality.scaled_jacobian.min() > 0.1
     if said:
         assert any(re.search(said, remark) for remark in tissue.remarks), tissue.remarks
+
+
+def test_corners_of_two_cells_only_are_left_out():
+    """Along the common edge of two cells, both polygons cannot be convex at a corner."""
+    rings = {1: [0, 1, 2, 6, 7, 3], 2: [2, 4, 5, 3, 7, 6], 3: [1, 8, 4, 2]}  # 6 and 7 between 2 and 3; three cells meet at 2
+    assert without_idle(rings) == {1: [0, 1, 2, 3], 2: [2, 4, 5, 3], 3: [1, 8, 4, 2]}
+    triangles = {1: [0, 1, 2], 2: [0, 2, 1]}
+    assert without_idle(triangles) == triangles
+
+
+def test_turned_corners_are_evened_out():
+    """A hexagonal prism with a corner pushed to the other side becomes convex and upright; a right one stays."""
+    angles = np.arange(6) * np.pi / 3
+    middle = np.column_stack([np.zeros(6), np.sin(angles), np.cos(angles)])
+    first, second = middle - [1, 0, 0], middle + [1, 0, 0]
+    same = evened(first, second, middle, {1: [*range(6)]})
+    assert same.moved == same.flawed == [] and np.array_equal(same.first, first)
+    first[0] = -0.5 * first[0] - [1, 0, 0]
+    found = evened(first, second, middle, {1: [*range(6)]})
+    assert found.moved == [1] and found.flawed == []
+    spokes = found.first[:, 1:] - found.first[:, 1:].mean(axis=0)
+    ways = np.roll(spokes, -1, axis=0) - spokes
+    turns = ways[:, 0] * np.roll(ways, -1, axis=0)[:, 1] - ways[:, 1] * np.roll(ways, -1, axis=0)[:, 0]
+    assert (turns < 0).all() or (turns > 0).all()
 
 
 def test_scutoids_are_counted():
@@ -118,7 +144,7 @@ def test_scutoids_are_counted():
     (np.random.default_rng(1).integers(0, 60_000, (30, 30, 30)), HALF, "as intensities have"),
     (np.ones((9, 9, 9), int), HALF, "no cell reaches from one free side to the other"),
     (np.ones((9, 9, 9), bool), HALF, "two values"),
-    (np.ones((9, 9, 9), int), (1, 0, 1), "spacing_um: 0; give three numbers above 0"),
+    (np.ones((9, 9, 9), int), (1, 0, 1), r"spacing_um: \(1, 0, 1\); give three numbers above 0"),
     (np.ones((9, 9, 9), int), None, "spacing_um: None; give three numbers"),
 ])
 def test_bad_volumes(volume, spacing, said):
