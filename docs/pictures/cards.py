@@ -22,10 +22,11 @@ PARTS = {
     "drosophila-paper": [(665, 42, 1000, 384)],
     "drosophila-shape-memory": [(335, 42, 660, 384)],
     "furrow-slice": TIMES,
+    "sheet": [(680, 140, 1190, 890), (60, 120, 545, 900)],
     "wing-disc": [(590, 45, 900, 520), (505, 540, 985, 655)],
     "xenopus": LAST,
 }
-FROM = {"drosophila-paper": "drosophila-variants", "drosophila-shape-memory": "drosophila-variants"}
+FROM = {"sheet": "../studio/tissue", "drosophila-paper": "drosophila-variants", "drosophila-shape-memory": "drosophila-variants"}
 
 
 def trimmed(image):

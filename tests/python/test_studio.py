@@ -10,8 +10,9 @@ import pytest
 
 import plica
 from plica import ScenarioError
-from plica.studio.draft import Draft, toml, typed
+from plica.studio.draft import STARTS, Draft, toml, typed
 from plica.studio.frames import FrameFile
+from plica.studio.server import CARDS
 from plica.studio.session import Refused, Session
 from plica.studio.shapes import surface
 
@@ -122,6 +123,17 @@ def test_every_built_in_scenario_is_written_and_read_back():
         assert read == table, name
 
 
+def test_tissues_to_paint_are_in_the_gallery_with_a_picture_and_fold_once_painted(session):
+    titles = session.order("gallery", {})["scenarios"]
+    for name, table in STARTS.items():
+        assert titles[name] == table["title"] and (CARDS / f"{name}.png").is_file()
+        session.order("open", {"source": name})
+        session.order("paint", {"region": "stripe", "ids": [1, 2, 3]})
+        session.order("set", {"changes": {"cortex.apical": {"region": "stripe", "tension_mN_per_m": 1}}})
+        run = session.runs[session.order("start", {"until_s": 1})["run"]]
+        wait(lambda run=run: run.time_s >= 1)
+
+
 def test_the_surface_is_that_of_a_cube_of_cubes():
     sim = plica.Simulation({"embryo": {"shape": "block", "length_um": 20, "width_um": 20, "cell_height_um": 20,
         "cells": [2, 2, 2]},
@@ -166,6 +178,29 @@ def test_acts_are_repeated_to_the_same_bits(session, tmp_path):
     assert np.array_equal(last_positions(run), sim.positions.astype("f4").ravel())
     continued = [one for one in session.runs.values() if one.from_s > 0]
     assert len(continued) >= 3, "acts that add no law continue a kept state"
+
+
+def test_acts_on_daughters_are_acts_on_all_daughters_of_a_cell_at_rest(tmp_path):
+    """Cells divide twice; a cut of a granddaughter continues a state before that, to the same bits."""
+    row = {"format": 1, "embryo": {"shape": "block", "length_um": 60, "width_um": 20, "cell_height_um": 20, "cells": [3, 1, 1]},
+           "region": {"middle": {"ids": [1]}}, "output": {"frame_every_s": 20},
+           "cortex": {"apical": {"region": "all", "tension_mN_per_m": 0.5}}, "time": {"end_s": 200},
+           "division": {name: {"region": "middle", "at_s": at_s, "plane": "transverse", "growth_s": 20, "max_generation": generation}
+                        for name, at_s, generation in [("once", 20, 1), ("again", 60, 2)]}}
+    session = Session(tmp_path, lambda: None, threads=1)
+    session.open(Draft.of(plica.Scenario(row)))
+    number = session.order("start", {})["run"]
+    first = run_to(session, number, 1e9)
+    assert set(first.founders().values()) == {1} and len(first.founders()) == 6
+    daughter = max(first.founders())
+    made = session.order("act", {"run": number, "at_s": 130, "kind": "cut", "cells": [daughter]})["run"]
+    run = run_to(session, made, 1e9)
+    assert run.scenario.to_dict()["region"]["cut-1"]["ids"] == [1] and "all their daughters" in run.title
+    assert 0 < run.from_s <= 20 and run.founders() == first.founders()
+    assert not np.array_equal(last_positions(run), last_positions(first))
+    sim = repeated(session.scenario_text(made), run, tmp_path)
+    assert np.array_equal(last_positions(run), sim.positions.astype("f4").ravel())
+    session.close()
 
 
 def test_an_act_leaves_the_run_it_began_from(session):

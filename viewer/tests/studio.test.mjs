@@ -1,14 +1,14 @@
 // plica studio in a real browser: what a person does with it, and random acts. STUDIO_PYTHON names the Python that has
 // plica.studio; PLICA the program that repeats what is taken away. Any console error, any request elsewhere, fails the test.
 import assert from "node:assert/strict";
-import { execFileSync, spawn } from "node:child_process";
+import { execFileSync } from "node:child_process";
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { isFirefox, launch } from "./browser.mjs";
+import { python, serve } from "./studio_server.mjs";
 
-const python = process.env.STUDIO_PYTHON;
 const plica = process.env.PLICA ?? "plica";
 const monkeyActs = Number(process.env.STUDIO_ACTS ?? 60);
 const patience = 300_000; // ms, on a busy machine
@@ -16,39 +16,18 @@ const options = { skip: python ? false : "STUDIO_PYTHON is not set" };
 const folder = mkdtempSync(join(tmpdir(), "plica-studio-"));
 let server;
 let browser;
-let url;
-
-async function serve() {
-  server = spawn(python, ["-m", "plica.studio", folder, "--no-browser", "--threads", "1"],
-    { stdio: ["ignore", "pipe", "inherit"] });
-  url = await new Promise((found, fail) => {
-    let text = "";
-    server.stdout.on("data", (data) => {
-      text += data;
-      const address = /http\S+/.exec(text);
-      if (address) found(address[0]);
-    });
-    server.on("exit", (status) => fail(new Error(`plica.studio ended with ${status}`)));
-  });
-}
-
-async function stop(signal) {
-  const ended = new Promise((done) => server.once("exit", done));
-  server.kill(signal);
-  await ended;
-}
 
 before(async () => {
   if (!python) return;
   writeFileSync(join(folder, "short.toml"),
     'base = "furrow-slice"\ntitle = "A short slice"\n[time]\nend_s = 240\n[output]\nframe_every_s = 15\n');
-  await serve();
+  server = await serve(folder);
   browser = await launch();
 });
 
 after(async () => {
   await browser?.close();
-  if (server) await stop("SIGINT");
+  await server?.stop("SIGINT");
   rmSync(folder, { recursive: true, force: true });
 });
 
@@ -60,9 +39,9 @@ async function open({ dark = false } = {}) {
   const wrong = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && wrong.push(message.text()));
   page.on("pageerror", (error) => wrong.push(String(error)));
-  page.on("request", (request) => new URL(request.url()).host !== new URL(url).host &&
+  page.on("request", (request) => new URL(request.url()).host !== new URL(server.url).host &&
     !/^(data|blob):/.test(request.url()) && wrong.push(request.url()));
-  await page.goto(url);
+  await page.goto(server.url);
   const done = async (allowed = /$^/) => {
     await context.close();
     assert.deepEqual(wrong.filter((text) => !/GPU stall|swiftshader|GroupMarkerNotSet/i.test(text) &&
@@ -153,6 +132,18 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.press(tension, "Enter");
   await page.waitForFunction(() => document.querySelector("#text").textContent.includes("tension_mN_per_m = 1.6"));
   assert.match(await page.textContent("#text"), /base = "furrow-slice"/);
+
+  // A new force can be set at once.
+  await page.selectOption("#add-kind", "cortex.*");
+  await page.fill("#add-name", "new");
+  await page.fill("#add-region", "spot");
+  await page.click("#add");
+  await page.fill('[data-key="cortex.new.tension_mN_per_m"]', "0.5");
+  await page.press('[data-key="cortex.new.tension_mN_per_m"]', "Enter");
+  await page.waitForFunction(() => /cortex.new\][^[]*tension_mN_per_m = 0.5/.test(document.querySelector("#text").textContent));
+  await page.click("#undo");
+  await page.click("#undo");
+  await page.waitForFunction(() => !document.querySelector("#text").textContent.includes("cortex.new"));
 
   // Times are typed in minutes.
   await page.click('[data-table="time"] > summary');
@@ -246,9 +237,9 @@ test("the server is killed and started again: the page goes on", options, async 
   await page.click("#go");
   await page.waitForFunction(() => document.querySelector("input[name=run]:checked").value !== "0");
   const run = await shownRun(page);
-  await stop("SIGKILL");
+  await server.stop("SIGKILL");
   await page.waitForSelector("#connection:not([hidden])");
-  await serve();
+  server = await serve(folder);
   await page.waitForSelector("#connection", { state: "hidden" });
   await page.waitForFunction((run) => document.querySelector(`li[data-run="${run}"]`), run);
   if (!["end_time", "equilibrium"].includes(await status(page, run))) await page.click("#go");

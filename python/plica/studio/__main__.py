@@ -10,6 +10,7 @@ from pathlib import Path
 from .. import _core
 from ..errors import PlicaError
 from . import made
+from .draft import STARTS
 
 
 def main() -> int:
@@ -24,7 +25,7 @@ def main() -> int:
     parser.add_argument("--no-browser", action="store_true", help="print the address only")
     given = parser.parse_args()
     scenario, folder = given.scenario, Path(".")
-    if scenario and scenario not in _core.scenarios:
+    if scenario and scenario not in _core.scenarios and scenario not in STARTS:
         path = Path(scenario)
         scenario, folder = (None, path) if path.is_dir() else (scenario, path.parent)
     try:

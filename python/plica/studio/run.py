@@ -184,12 +184,14 @@ class StudioRun:
     def _continued(self) -> Optional[Simulation]:
         """Continue the newest kept state from which this and its parent's scenario take equal steps; None: from rest.
 
-        Before the last snapshot at or before the act, steps end on the same times in both scenarios."""
+        Before the last snapshot at or before the act, steps end on the same times in both scenarios. A record begins
+        before the first division."""
         every_s = float(self.scenario["output.frame_every_s"])
         shared_s, run, origin = math.inf, self, self.parent
         while origin is not None:
             # A state of an earlier run also has to come before the act that parted the two.
-            shared_s = min(shared_s, math.floor(run.act_s / every_s + INSTANT_S) * every_s if every_s > 0 else 0.0)
+            shared_s = min(shared_s, math.floor(run.act_s / every_s + INSTANT_S) * every_s if every_s > 0 else 0.0,
+                           *(float(row["birth_s"]) for row in origin._births()))
             for bound_s, path in reversed(origin.kept_states()):
                 if bound_s > shared_s + 4 * every_s:  # certainly too late
                     continue
@@ -197,7 +199,7 @@ class StudioRun:
                     sim = self._loaded(path)
                 except FileError:
                     return None  # another law, say: its memory does not fit
-                if sim.time_s <= shared_s + INSTANT_S:
+                if sim.time_s <= shared_s + INSTANT_S and not sim._core.divisions:
                     return sim
             run, origin = origin, origin.parent
         return None
@@ -226,6 +228,23 @@ class StudioRun:
         if self.parent is not None:
             self.rows = [row for row in self.parent.rows if (row[0] or 0.0) < self.from_s - INSTANT_S]
         self.rows += own
+
+    def _births(self) -> list[dict[str, str]]:
+        """Return the rows of lineage.csv: this run's divisions after those of its parent."""
+        file = self.results / "lineage.csv"
+        before = self.parent._births() if self.parent is not None else []
+        if not file.exists():
+            return before
+        with file.open(newline="") as lines:
+            return before + list(csv.DictReader(lines))
+
+    def founders(self) -> dict[int, int]:
+        """Return the cell at rest from which each daughter of a division descends."""
+        found: dict[int, int] = {}
+        for row in self._births():
+            mother = int(row["mother_id"])
+            found[int(row["cell_id"])] = found.get(mother, mother)
+        return found
 
     # States that acts continue
 

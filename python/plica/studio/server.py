@@ -23,6 +23,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from .. import __version__, _core
 from ..errors import FileError, PlicaError
+from .draft import STARTS
 from .messages import problem_of
 from .session import Refused, Session
 
@@ -198,9 +199,9 @@ class Server:
         return guarded
 
     async def _card(self, request: Request) -> Response:
-        """Give the picture of a built-in scenario."""
+        """Give the picture of a scenario of the gallery."""
         name = request.path_params["name"]
-        if name not in _core.scenarios or not (CARDS / f"{name}.png").is_file():
+        if name not in (*STARTS, *_core.scenarios) or not (CARDS / f"{name}.png").is_file():
             return PlainTextResponse(f"{name[:60]}: no such picture\n", 404, HEADERS)
         return Response((CARDS / f"{name}.png").read_bytes(), media_type="image/png", headers=HEADERS)
 

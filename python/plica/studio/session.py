@@ -19,7 +19,7 @@ from ..errors import PlicaError
 from ..scenario import Scenario, _items, builtin_scenarios
 from ..simulation import Simulation
 from .acts import act, end_of_act, running_acts, time_of_act
-from .draft import Draft, Table, row_of, schema, text_of, typed
+from .draft import STARTS, Draft, Table, row_of, schema, text_of, typed
 from .rest import Rest
 from .run import StudioRun
 from .tissues import ENDINGS, Candidate
@@ -148,7 +148,7 @@ class Session:
         return full
 
     def do_gallery(self) -> Table:
-        """List built-in scenarios and the files of the folder that can be opened."""
+        """List tissues to paint, built-in scenarios and the files of the folder that can be opened."""
         files, seen = [], 0
         for folder, inner, names in os.walk(self.folder):
             inner[:] = sorted(name for name in inner if not name.startswith("."))
@@ -159,11 +159,12 @@ class Session:
             if seen > MOST_SEEN:
                 break
         recent = [name for _, name in sorted(files, reverse=True)[:MOST_FILES]]
-        return {"scenarios": builtin_scenarios(), "files": recent, "folder": str(self.folder)}
+        titles = {name: table["title"] for name, table in STARTS.items()}
+        return {"scenarios": titles | builtin_scenarios(), "files": recent, "folder": str(self.folder)}
 
     def do_open(self, source: str) -> Table:
         """Open a built-in scenario, or a scenario or tissue file of the folder."""
-        if source in _core.scenarios:
+        if source in _core.scenarios or source in STARTS:
             self.open(Draft.of(source))
             return {}
         path = self._file(source)
@@ -297,16 +298,18 @@ class Session:
         name: str = "") -> Table:
         """Act on cells of a run at a time: another run, which continues the first from there on."""
         before = self._run(run)
-        if before.scenario.to_dict().get("division") and before.file.frames and len(before.shapes) > 1:
-            raise Refused("cells have divided; act before the first division, or write the act into the scenario")
         at_s, table = time_of_act(float(at_s)), before.scenario.to_dict()
         if kind == "end":
             changes, title = end_of_act(name, table, at_s)
         else:
-            chosen = sorted({int(cell) for cell in cells})
+            # A scenario names cells of the tissue at rest: an act on a daughter is one on all daughters of that cell.
+            founders, named = before.founders(), {int(cell) for cell in cells}
+            chosen = sorted({founders.get(cell, cell) for cell in named})
             if not chosen:
                 raise Refused("no cells are selected; select some with the brush or the lasso")
             changes, title = act(kind, table, chosen, at_s, float(strength))
+            if named & founders.keys():
+                title += " with all their daughters"
         draft = Draft(table, before.base)
         draft.set(changes)
         before.pause()

@@ -123,8 +123,7 @@ export class Forms {
 
   private formOf({ name, schema, values }: Place): HTMLElement {
     const base = this.draft?.base_table;
-    const details = element("details", { class: "table", "data-table": name });
-    details.open = this.opened.has(name);
+    const details = this.rememberOpen(name, element("details", { class: "table", "data-table": name }));
     const prefix = name === "" ? "" : `${name}.`;
     const shape = String(valueAt(this.draft?.table, "embryo.shape") ?? "");
     const rows = schema.rows.filter(({ key, instead_of, shapes }) =>
@@ -134,11 +133,7 @@ export class Forms {
     details.append(element("summary", { title: plain(schema.meaning) }, name === "" ? "General" : name,
       ...(differs ? [element("span", { class: "changed", title: `differs from ${this.draft?.base}` }, " ●")] : []),
       ...(schema.path === "region.*" ? [element("span", { class: "size", "data-region": name.slice("region.".length) })] : [])));
-    details.addEventListener("toggle", () => {
-      if (details.open) this.opened.add(name);
-      else this.opened.delete(name);
-      if (details.open && !details.dataset.filled) fill();
-    });
+    details.addEventListener("toggle", () => details.open && !details.dataset.filled && fill());
     const fill = () => {
       details.dataset.filled = "true";
       details.append(element("p", { class: "note" }, plain(schema.meaning)));
@@ -148,11 +143,21 @@ export class Forms {
         details.append(this.curve(prefix + inner, valueAt(values, inner) as Table | undefined));
       const rest = rows.filter((row) => !has(row) && !this.isCurve(row.key));
       if (rest.length > 0)
-        details.append(element("details", { class: "more" }, element("summary", {}, `${rest.length} more keys`),
-          ...rest.map((row) => this.field(prefix, row, values))));
+        details.append(this.rememberOpen(`more of ${name}`, element("details", { class: "more" },
+          element("summary", {}, `${rest.length} more keys`), ...rest.map((row) => this.field(prefix, row, values)))));
       if (schema.path.endsWith(".*")) details.append(this.remove(name));
     };
     if (details.open) fill();
+    return details;
+  }
+
+  /** Open what was open before the forms were made again. */
+  private rememberOpen(name: string, details: HTMLDetailsElement): HTMLDetailsElement {
+    details.open = this.opened.has(name);
+    details.addEventListener("toggle", () => {
+      if (details.open) this.opened.add(name);
+      else this.opened.delete(name);
+    });
     return details;
   }
 
@@ -172,7 +177,7 @@ export class Forms {
     const fault = element("span", { class: "fault", role: "alert" });
     const box = element("div", { class: "field" },
       element("label", { title: `${key}: ${plain(row.meaning)}${row.allowed ? ` Allowed: ${row.allowed}.` : ""}` },
-        element("span", { class: "name" }, lastOf(name.replaceAll(": ", ".")),
+        element("span", { class: "name" }, name,
           ...(this.draft?.base_table && this.differs(key) ? [this.reset(key)] : [])),
         input, element("span", { class: "unit" }, unit)), fault);
     this.listen(key, row, input, fault);
@@ -333,7 +338,7 @@ export class Forms {
       const path = `${kind.value.replace(".*", "")}.${name.value.trim()}`;
       const schema = this.schema.find((one) => one.path === kind.value)!;
       const table = startOf(schema, region.value);
-      this.opened.add(path);
+      this.opened.add(path).add(`more of ${path}`); // a new table has few keys yet
       this.connection.order("set", { changes: { [path]: table } }).then(
         () => {
           [fault.textContent, name.value] = ["", ""];
@@ -354,15 +359,17 @@ export class Forms {
   }
 }
 
-// Keys that a new table needs before it is valid; values that change nothing yet where there are such.
+// Values without which a new table is refused, since it would have no effect.
+const starts: Record<string, Table> = {
+  "ablation.*": { at_s: 0 }, "cortex.*": { tension_mN_per_m: 1 }, "division.*": { at_s: 60 },
+  "elasticity.*": { young_modulus_Pa: 1000 }, "monitor.*": { axis: "z" }, "region.*": { x_um: [-10, 10] },
+};
+
 function startOf({ path, rows }: SchemaTable, region: string): Table {
   const table: Table = {};
   for (const { key, required, type, words: allowed } of rows) {
     if (key === "region") table[key] = region;
     else if (required && !key.includes(".")) table[key] = type === "number" ? 0 : (allowed[0] ?? "");
   }
-  if (path === "ablation.*") table.at_s = 0;
-  if (path === "division.*") table.at_s = 60;
-  if (path === "region.*") table.x_um = [-10, 10];
-  return table;
+  return { ...table, ...starts[path] };
 }
