@@ -10,7 +10,7 @@ declare -A packages=(
   # OpenBLAS in its serial variant: one thread, so that results are bitwise identical.
   [libraries]="libeigen3-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
                libmumps-seq-dev libmetis-dev libopenblas-serial-dev libdeflate-dev libhdf5-dev libvtk9-dev libx11-dev libnlopt-cxx-dev libboost-dev
-               libqhull-dev"
+               libqhull-dev libmuparser-dev"
   # To bundle the report's page. Node 18 or newer from elsewhere does as well.
   [viewer]="nodejs npm"
   # To test that page.

@@ -548,6 +548,34 @@ def periodic():
     save(figure, "theory/periodic.svg")
 
 
+def signals():
+    figure, axes = canvas(760, 300)
+    size = 34
+    hexagon = np.array([(size * np.cos(w), size * np.sin(w)) for w in np.radians(np.arange(30, 390, 60))])
+    step = size * np.sqrt(3)
+    amber, pale = np.array((0.85, 0.55, 0.15)), np.array((0.98, 0.96, 0.9))
+    centres = {}
+    for row in range(4):
+        for column in range(6):
+            centres[row, column] = np.array((45 + step * (column + 0.5 * (row % 2)), 60 + 1.5 * size * row))
+            much = np.exp(-max(0, centres[row, column][0] - 75) / 110)
+            polygon(axes, hexagon + centres[row, column], fill=tuple(pale + much * (amber - pale)), edge=LATERAL, width=3)
+    one, other = centres[1, 3], centres[1, 4]
+    dots(axes, [one, other])
+    arrow(axes, one + (8, 0), other - (8, 0), FORCE)
+    label(axes, (300, 272), "$D\\,A/d\\,(c_1-c_2)$", FORCE, BIG)
+    leader(axes, (300, 250), (one + other) / 2 + (0, 8), FORCE, dot=False)
+    label(axes, (60, 272), "source")
+    curve = inset(figure, (505, 55, 235, 220), "distance from the source", "concentration")
+    distance = np.linspace(0, 4, 200)
+    curve.plot(distance, np.exp(-distance), color=APICAL)
+    curve.plot([1, 1, 0], [0, np.exp(-1), np.exp(-1)], color=TEXT, linewidth=1.5, linestyle=(0, (3, 2)))
+    curve.set(xlim=(0, 4), ylim=(0, 1.1))
+    curve.set_xticks([1], ["$\\sqrt{D/k}$"])
+    curve.set_yticks([np.exp(-1)], ["$c_0/e$"])
+    save(figure, "theory/signals.svg")
+
+
 def energy():
     figure, axes = canvas(760, 330)
 
@@ -572,7 +600,7 @@ def energy():
 
 
 LAWS = (contraction, cortex, division, corotational, neo_hookean, shape_memory, corner_barrier, cell_volume, vitelline, shell_drag,
-        coulomb, self_contact, enclosed_volume, surroundings, foundation, ties, mirror, periodic, energy)
+        coulomb, self_contact, enclosed_volume, surroundings, foundation, ties, mirror, periodic, signals, energy)
 
 if __name__ == "__main__":
     for law in LAWS:

@@ -53,9 +53,20 @@ nb::dict cell_data(const Simulation& simulation) {
   const MeasuredCells measured(simulation.model(), simulation.state());
   for (const CellColumn& column : cell_columns())
     if (column.in_csv) result[std::string(column.name).c_str()] = array_of(column.values(measured));
+  for (std::size_t s = 0; s < simulation.state().signals.size(); ++s)
+    result[array_of_signal(simulation.model().signals.rules()[s].name).c_str()] =
+        array_of(std::vector<double>(simulation.state().signals[s]));
   for (const auto* arrays : {&simulation.model().tissue.cell_arrays, &simulation.outside_arrays()})
     for (const auto& [name, values] : *arrays)
       if (!result.contains(name.c_str())) result[name.c_str()] = array_of(values);
+  return result;
+}
+
+nb::dict concentrations(const Simulation& simulation) {
+  nb::dict result;
+  const State& state = simulation.state();
+  for (std::size_t s = 0; s < state.signals.size(); ++s)
+    result[simulation.model().signals.rules()[s].name.c_str()] = array_of(std::vector<double>(state.signals[s]));
   return result;
 }
 
@@ -188,6 +199,11 @@ void SimulationOf::set_cell_array(const std::string& name, std::vector<double> v
   simulation_->set_cell_array(name, std::move(values));
 }
 
+void SimulationOf::set_signal(const std::string& name, std::vector<double> values) {
+  const Turn turn(*this);
+  simulation_->set_signal(name, std::move(values));
+}
+
 nb::bytes SimulationOf::save() {
   const Turn turn(*this);
   const std::string bytes =
@@ -242,6 +258,7 @@ void bind_simulation(nb::module_& module) {
       .def("step", &S::step, nb::arg("until_s"))
       .def("set_activity", &S::set_activity, nb::arg("law"), nb::arg("activities"))
       .def("set_cell_array", &S::set_cell_array, nb::arg("name"), nb::arg("values"))
+      .def("set_signal", &S::set_signal, nb::arg("name"), nb::arg("values"))
       .def("save", &S::save)
       .def("begin_record", &S::begin_record, nb::arg("out"), nb::arg("start"))
       .def("end_record", &S::end_record)
@@ -283,6 +300,7 @@ void bind_simulation(nb::module_& module) {
       .def_prop_ro("velocities", of_state(&State::velocities))
       .def_prop_ro("pressures", looks(pressures_Pa))
       .def_prop_ro("cell_data", looks(cell_data))
+      .def_prop_ro("signals", looks(concentrations))
       .def_prop_ro("regions", looks(regions))
       .def_prop_ro("neighbours", looks(neighbours))
       .def_prop_ro("energies", looks(energies))

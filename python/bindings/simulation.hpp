@@ -39,6 +39,7 @@ class SimulationOf {
   bool step(double until_s);
   void set_activity(const std::string& law, std::vector<double> activities);
   void set_cell_array(const std::string& name, std::vector<double> values);
+  void set_signal(const std::string& name, std::vector<double> values);
   [[nodiscard]] nb::bytes save();
 
   /// Begin recording; return notes on the checkpoint from which it continues.

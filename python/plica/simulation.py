@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .arguments import callable_of, number, path_of, per_cell, text_of, whole
-from .cell_data import CellData
+from .cell_data import CellData, Signals
 from .errors import FileError
 from .progress import Progress, moment
 from .results import Run, _grid, _pandas, open_run
@@ -457,6 +457,23 @@ class Simulation:
         1.0
         """
         return CellData(self._core)
+
+    @property
+    def signals(self) -> Signals:
+        """Concentration of each ``[signal.NAME]`` in each cell, by name; arrays of shape (cells,).
+
+        Assign an array to change it: the next step begins with it, and laws follow it. ValueError for an unknown name, a wrong
+        shape, or a value that is not finite.
+
+        Examples
+        --------
+        >>> import plica
+        >>> sim = plica.Simulation({"embryo": {"shape": "sheet"}, "signal": {"u": {"decay_per_min": 0.1}}})
+        >>> sim.signals["u"] = sim.cell_data["x_um"] > 0
+        >>> float(sim.signals["u"].max())
+        1.0
+        """
+        return Signals(self._core)
 
     @property
     def cells(self) -> pandas.DataFrame:

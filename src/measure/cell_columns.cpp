@@ -209,7 +209,8 @@ std::span<const LineageColumn> lineage_columns() {
 }
 
 bool is_plicas(std::string_view cell_array) {
-  return cell_array.starts_with("region_") || std::ranges::any_of(cell_columns(), [&](const CellColumn& column) {
+  return cell_array.starts_with("region_") || cell_array.starts_with(array_of_signal("")) ||
+         std::ranges::any_of(cell_columns(), [&](const CellColumn& column) {
            return column.in_frames != InFrames::nothing && column.name == cell_array;
          });
 }

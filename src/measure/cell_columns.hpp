@@ -45,8 +45,11 @@ struct CellColumn {
 std::span<const CellColumn> cell_columns();
 std::vector<std::string> cells_csv_names();
 
-/// Whether plica writes cell data of this name to snapshots (a column or a region). Measured data of an input file with
-/// such a name are not copied to snapshots.
+/// Name of a signal in cells.csv and snapshots.
+inline std::string array_of_signal(const std::string& signal) { return "signal_" + signal; }
+
+/// Whether plica writes cell data of this name to snapshots (a column, a region or a signal). Measured data of an input
+/// file with such a name are not copied to snapshots.
 bool is_plicas(std::string_view cell_array);
 
 /// Variable of a single file.

@@ -154,7 +154,9 @@ std::string cell_table() {
   for (const CellColumn& column : cell_columns())
     text += fmt::format("| `{}` | {} | {} | {} |\n", column.name, mark(column.in_csv),
                         mark(column.in_frames != InFrames::nothing), column.meaning);
-  return text + "| `region_NAME` |  | x | 1 in cells of the region, else 0. |\n";
+  return text +
+         "| `region_NAME` |  | x | 1 in cells of the region, else 0. |\n"
+         "| `signal_NAME` | x | x | Concentration of `[signal.NAME]`; only where there are signals. |\n";
 }
 
 // Table of columns that go to one file only.

@@ -177,6 +177,7 @@ TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDiv
     std::erase_if(model.growths, [&](const Growth& growth) { return growth.cell == plan.cut.cell; });
   }
 
+  const std::vector<double> volumes_before = model.volumes.volumes(state.positions);
   TissueChange change = divide(model.tissue, cuts, state.time_s, state.positions);
   const Vectors before = std::move(state.positions);
   state.positions = with_new_nodes(model.tissue, change, before);
@@ -192,6 +193,8 @@ TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDiv
 
   divide_constraints(model, state, change);
   divide_laws(model, state, change, before);
+  model.signals = model.signals.after(model.tissue, change);
+  state.signals = inherited_signals(change, volumes_before, model.volumes.volumes(state.positions), state.signals);
   divide_holds(model, change);
   divide_obstacles(model, state, change);
   if (!model.masses().empty()) restore_momentum(model, change, momentum_before, state.velocities);

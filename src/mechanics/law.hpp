@@ -23,6 +23,9 @@ struct Tissue;
 struct Model;
 struct TissueChange;
 struct CellPattern;
+template <class Value>
+struct ByCell;
+using CellArray = ByCell<double>;
 
 /// State of a step: the unknown positions at its end, and everything constant during it. A quantity q of positions
 /// changes at the end of the step at the rate
@@ -224,6 +227,13 @@ class Law {
   [[nodiscard]] virtual std::vector<double> with_activities(std::span<const double> /*internal*/,
                                                             std::span<const double> /*activities*/) const {
     throw std::logic_error(label() + ": is not an active law");
+  }
+
+  /// Return the internal state with activities that follow the signals of a state (cells, by signal) at its time.
+  [[nodiscard]] virtual std::vector<double> with_signals(std::span<const double> internal,
+                                                         std::span<const CellArray> /*signals*/,
+                                                         double /*time_s*/) const {
+    return {internal.begin(), internal.end()};
   }
 
   /// Return region, amplitudes and ablations of a law that acts by cells; null for others.

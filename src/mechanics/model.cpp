@@ -21,6 +21,7 @@ Model::Model(Tissue t) : tissue(std::move(t)), volumes(tissue), held(tissue.node
 Model::Model(const Model& other, Tissue t, std::span<const ElementId> reshaped)
     : tissue(std::move(t)),
       volumes(other.volumes.grown(tissue)),
+      signals(other.signals),
       held(other.held),
       growths(other.growths),
       stiffness_scale(other.stiffness_scale) {
@@ -85,6 +86,12 @@ std::vector<std::vector<double>> next_internals(const Model& model, const Step& 
   return internals;
 }
 
+void follow_signals(const Model& model, State& state) {
+  if (model.signals.empty()) return;
+  for (std::size_t l = 0; l < model.laws.size(); ++l)
+    state.internals[l] = model.laws[l]->with_signals(state.internals[l], state.signals, state.time_s);
+}
+
 State rest_state(const Model& model) {
   State state;
   state.positions = model.tissue.rest_positions;
@@ -95,6 +102,8 @@ State rest_state(const Model& model) {
   for (std::size_t k = 0; k < contacts.size(); ++k)
     state.on_obstacle.push_back(contacts.gap(k, state.positions).value <= 1e-9);
   for (const auto& law : model.laws) state.internals.push_back(law->first_internal(model.tissue));
+  state.signals = model.signals.initial();
+  follow_signals(model, state);
   return state;
 }
 

@@ -13,6 +13,7 @@
 #include "mechanics/constraints/cell_volume.hpp"
 #include "mechanics/law.hpp"
 #include "mechanics/obstacle.hpp"
+#include "mechanics/signals/signals.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -41,6 +42,7 @@ struct Model {
   std::vector<std::unique_ptr<Law>> laws;
   std::vector<std::unique_ptr<Constraint>> constraints;
   std::vector<std::unique_ptr<Obstacle>> obstacles;
+  Signals signals;
   std::vector<std::array<bool, 3>> held;  // nodes; fixed directions x, y, z
   std::vector<Growth> growths;            // in progress, or finished since the last division
   double stiffness_scale = 1;             // Young's modulus, kPa, for load-independent tolerances
@@ -117,6 +119,7 @@ struct State {
   std::vector<double> obstacle_forces;         // ObstacleContacts; nN, >= 0
   std::vector<char> on_obstacle;               // ObstacleContacts
   std::vector<std::vector<double>> internals;  // laws: internal states (Law::next_internal)
+  Signals::Values signals;                     // concentrations; cells, by signal of the model
   double divided_until_s = -1;                 // divisions due until then are done
 
   // Recent rates of change (record_motion), from which the end of the next step is predicted. Empty if unknown: at the
@@ -134,6 +137,9 @@ struct State {
     return std::span(multipliers).first(model.tissue.cells.size());
   }
 };
+
+/// Let the activities of laws follow the signals of the state.
+void follow_signals(const Model& model, State& state);
 
 /// Return the reference state, before the first step.
 State rest_state(const Model& model);

@@ -92,6 +92,7 @@ Model restored(const Model& initial, const ModelMemory& memory, std::size_t node
   model.held = memory.held;
   restore_growths(memory.growths, model);
   model.volumes = initial.volumes.divided(model.tissue, change);
+  model.signals = initial.signals.after(model.tissue, change);
   model.stiffness_scale = initial.stiffness_scale;
   for (std::size_t l = 0; l < initial.laws.size(); ++l) {
     model.laws.push_back(initial.laws[l]->restored(model.tissue, change, positions, memory.laws[l]));

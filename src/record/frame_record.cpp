@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/names.hpp"
 
@@ -47,14 +48,18 @@ MeshArrays FrameRecord::arrays() const {
   return arrays;
 }
 
-FrameTaker::FrameTaker(const Tissue& tissue, const FurrowSites* sites, bool with_cell_rows)
+FrameTaker::FrameTaker(const Model& model, const FurrowSites* sites, bool with_cell_rows)
     : sites_(sites), with_cell_rows_(with_cell_rows) {
-  follow_division(tissue);
+  for (const SignalRule& rule : model.signals.rules()) signal_arrays_.push_back(array_of_signal(rule.name));
+  follow_division(model.tissue);
 }
 
 std::map<std::string, std::vector<std::string>> FrameTaker::tables() const {
   std::map<std::string, std::vector<std::string>> headers;
-  if (with_cell_rows_) headers[cells_csv] = cells_csv_names();
+  if (with_cell_rows_) {
+    headers[cells_csv] = cells_csv_names();
+    std::ranges::copy(signal_arrays_, std::back_inserter(headers[cells_csv]));
+  }
   if (sites_ != nullptr) headers[midline_csv] = names_of(midline_columns());
   if (sites_ != nullptr) headers[section_csv] = names_of(section_columns());
   return headers;
@@ -71,6 +76,10 @@ FrameRecord FrameTaker::take(const Model& model, const State& state,
   for (const NodeColumn& column : node_columns()) frame.vectors.emplace_back(column.name, column.values(model, state));
   const MeasuredCells measured(model, state);
   add_cells(measured, frame);
+  for (std::size_t s = 0; s < state.signals.size(); ++s) {
+    frame.scalars.emplace_back(signal_arrays_[s], state.signals[s]);
+    if (with_cell_rows_) frame.columns[cells_csv].push_back(state.signals[s]);
+  }
   frame.scalars.insert(frame.scalars.end(), outside.begin(), outside.end());
   if (sites_ != nullptr) add_fold(measured, frame);
   return frame;

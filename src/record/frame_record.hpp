@@ -44,7 +44,7 @@ struct FrameRecord {
 class FrameTaker {
  public:
   /// `sites`: null without a fold. `with_cell_rows`: snapshots include the rows of cells.csv.
-  FrameTaker(const Tissue& tissue, const FurrowSites* sites, bool with_cell_rows);
+  FrameTaker(const Model& model, const FurrowSites* sites, bool with_cell_rows);
 
   /// `outside`: arrays of cells besides those of the model (Simulation::outside_arrays).
   [[nodiscard]] FrameRecord take(const Model& model, const State& state,
@@ -60,6 +60,7 @@ class FrameTaker {
   void add_cells(const MeasuredCells& measured, FrameRecord& frame) const;
   void add_fold(const MeasuredCells& measured, FrameRecord& frame) const;
 
+  std::vector<std::string> signal_arrays_;  // names, in the order of the model's signals
   const FurrowSites* sites_;
   bool with_cell_rows_;
   std::shared_ptr<const FrameCells> cells_;

@@ -27,7 +27,7 @@ Recorder::Recorder(fs::path directory, const Scenario& scenario, const Simulatio
       scenario_(scenario),
       simulation_(simulation),
       start_(start),
-      frame_taker_(simulation.model().tissue, simulation.observer().kept<FurrowSites>("fold"),
+      frame_taker_(simulation.model(), simulation.observer().kept<FurrowSites>("fold"),
                    scenario.output.cells_csv.value_or(simulation.model().tissue.cells.size() <= most_cells_by_default)),
       blank_{version(), resolved_toml(scenario), fingerprint(simulation.model().tissue), {}, {}},
       checkpoints_(directory_) {}

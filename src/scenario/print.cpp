@@ -64,6 +64,12 @@ std::string in_toml(int value) { return fmt::format("{}", value); }
 std::string in_toml(double value) { return fmt::format("{}", value); }  // the shortest text that reads back exactly
 std::string in_toml(bool value) { return value ? "true" : "false"; }
 
+std::string in_toml(const std::map<std::string, double>& numbers) {
+  std::vector<std::string> texts;
+  for (const auto& [name, number] : numbers) texts.push_back(fmt::format("{} = {}", name, number));
+  return fmt::format("{{ {} }}", fmt::join(texts, ", "));
+}
+
 template <std::ranges::range Items>
 std::string in_toml(const Items& items) {
   std::vector<std::string> texts;

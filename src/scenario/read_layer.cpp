@@ -101,6 +101,16 @@ Problem read(const toml::node& node, const KeyRow& row, std::array<Item, n>& tar
   return {};
 }
 
+// Adds to what a base gave, as keys of tables do.
+Problem read(const toml::node& node, const KeyRow& row, std::map<std::string, double>& target) {
+  const toml::table* numbers = node.as_table();
+  if (numbers == nullptr) return wrong_type(node);
+  for (const auto& [key, number] : *numbers)
+    if (Problem problem = read(number, row, target[std::string(key.str())]))
+      return fmt::format("{}: {}", key.str(), *problem);
+  return {};
+}
+
 template <class Value>
 Problem read(const toml::node& node, const KeyRow& row, std::optional<Value>& target) {
   const std::string_view none = row.allowed.word_for_none;

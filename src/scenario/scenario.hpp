@@ -178,15 +178,20 @@ struct ContractionInput : ActingInput {
   double damping_nN_s_per_um = 0;
 };
 
-/// Shape-dependent activation: a threshold on the cell's own shape starts its programs.
-struct TriggerInput {
-  std::string measure;                 // shape measure (ShapeMeasure); empty: none
+/// Shape measure (ShapeMeasure) or signal that a cell reads; both empty: none.
+struct ActivationInput {
+  std::string measure, signal;
+
+  [[nodiscard]] bool is_used() const { return !measure.empty() || !signal.empty(); }
+};
+
+/// Cell-autonomous activation: a threshold on the cell's own shape or signal starts its programs.
+struct TriggerInput : ActivationInput {
   std::optional<double> below, above;  // one of them
 };
 
-/// Shape-dependent tension: a factor that follows the cell's own shape.
-struct FollowInput {
-  std::string measure;  // shape measure (ShapeMeasure); empty: none
+/// Cell-autonomous tension: a factor that follows the cell's own shape or signal.
+struct FollowInput : ActivationInput {
   std::optional<double> from, to;
 };
 
@@ -200,6 +205,25 @@ struct CortexInput : ActingInput {
   ProgramInput stiffness_program;
   TriggerInput trigger;
   FollowInput follow;
+};
+
+struct SignalSourceInput {
+  std::string region;             // empty: none
+  std::optional<double> per_min;  // concentration
+};
+
+/// Concentration per cell that is made, decays, reacts and diffuses.
+struct SignalInput {
+  double diffusion_um2_per_min = 0;
+  double decay_per_min = 0;
+  SignalSourceInput source;
+  std::string reaction;                     // per minute; empty: none
+  std::map<std::string, double> constants;  // of the reaction
+  double initial = 0;
+  std::string initial_region = "all";
+  std::string initial_array;  // empty: `initial`
+  double initial_spread = 0;
+  int seed = 1;
 };
 
 enum class EnclosedState { held, compliant, free };
@@ -345,6 +369,7 @@ struct Scenario {
   DynamicsInput dynamics;
   std::map<std::string, ContractionInput> contractions;
   std::map<std::string, CortexInput> cortices;
+  std::map<std::string, SignalInput> signals;
   std::map<std::string, EnclosedInput> enclosed;
   SelfContactInput self_contact;
   TimeInput time;

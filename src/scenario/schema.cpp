@@ -58,6 +58,7 @@ std::string KeyRow::type() const {
   if (std::holds_alternative<std::vector<int>*>(slot)) return "list of integers";
   if (std::holds_alternative<std::vector<double>*>(slot)) return "list of numbers";
   if (std::holds_alternative<std::vector<std::string>*>(slot)) return has_words ? "list of words" : "list of texts";
+  if (std::holds_alternative<std::map<std::string, double>*>(slot)) return "table of numbers";
   return has_words ? "word" : "text";
 }
 
@@ -87,9 +88,10 @@ std::span<const InnerTables> inner_tables() {
        "of `[cortex.NAME]`, and the pressure of `[pressure.NAME]`."},
       {"Trigger and follow",
        {"trigger", "follow"},
-       "Shape-dependent, cell-autonomous activity. `trigger` starts both time courses of a cell at a threshold; "
+       "Cell-autonomous activity, by shape or `[signal.NAME]`. `trigger` starts both time courses of a cell at a "
+       "threshold; "
        "before, tension is 0 and stiffness that of time 0. `follow` multiplies the active tension by a linear function "
-       "of cell shape. Shape is measured at the start of each step, relative to the reference state; `apical_stretch` "
+       "of it. Shape is measured at the start of each step, relative to the reference state; `apical_stretch` "
        "is the largest stretch of the apical surface."},
       {"Profile",
        {"profile"},

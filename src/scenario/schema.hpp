@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -23,9 +24,10 @@ struct Origin;
 struct Tissue;
 
 /// Field that a row fills; monostate for `base`, which only the loader reads.
-using Slot = std::variant<std::monostate, int*, double*, bool*, std::string*, std::optional<int>*,
-                          std::optional<double>*, std::optional<bool>*, std::optional<Range>*, std::array<int, 3>*,
-                          std::vector<int>*, std::vector<double>*, std::vector<std::string>*>;
+using Slot =
+    std::variant<std::monostate, int*, double*, bool*, std::string*, std::optional<int>*, std::optional<double>*,
+                 std::optional<bool>*, std::optional<Range>*, std::array<int, 3>*, std::vector<int>*,
+                 std::vector<double>*, std::vector<std::string>*, std::map<std::string, double>*>;
 
 /// Allowed values. Bounds apply to each number of a list, words to each text of a list.
 struct Allowed {

@@ -123,10 +123,10 @@ inline constexpr auto delay_starts = std::to_array<Word<StartDelay::From>>({{"mi
 
 // [cortex.NAME], in addition to those above.
 inline constexpr auto shape_measures =
-    std::to_array<Word<ShapeMeasure>>({{"apical_area_ratio", ShapeMeasure::apical_area_ratio},
-                                       {"basal_area_ratio", ShapeMeasure::basal_area_ratio},
-                                       {"height_ratio", ShapeMeasure::height_ratio},
-                                       {"apical_stretch", ShapeMeasure::apical_stretch}});
+    std::to_array<Word<ShapeMeasure>>({{shape_measure_names[0], ShapeMeasure::apical_area_ratio},
+                                       {shape_measure_names[1], ShapeMeasure::basal_area_ratio},
+                                       {shape_measure_names[2], ShapeMeasure::height_ratio},
+                                       {shape_measure_names[3], ShapeMeasure::apical_stretch}});
 
 // [pressure.NAME]: whether the face is apical.
 inline constexpr auto surfaces =

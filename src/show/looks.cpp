@@ -91,7 +91,10 @@ std::vector<ColourField> fields_of(const Frame& frame) {
   std::vector<ColourField> fields = colour_fields();
   const std::vector<std::string> plicas = names_of(fields);
   for (const auto& [name, values] : frame.element_scalars)
-    if (!is_plicas(name) && std::ranges::find(plicas, name) == plicas.end()) fields.push_back({name, name, "", name});
+    if (name.starts_with(array_of_signal("")))
+      fields.push_back({name, "signal " + name.substr(array_of_signal("").size()), "", name});
+    else if (!is_plicas(name) && std::ranges::find(plicas, name) == plicas.end())
+      fields.push_back({name, name, "", name});
   return fields;
 }
 

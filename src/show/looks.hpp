@@ -53,7 +53,7 @@ struct ColourField {
 /// generation, region, self-intersections.
 const std::vector<ColourField>& colour_fields();
 
-/// Built-in quantities and measured cell data of an input file (genes, for example), named as their array.
+/// Built-in quantities, signals, and measured cell data of an input file (genes, for example), named as their array.
 std::vector<ColourField> fields_of(const Frame& frame);
 
 /// Prefix of region arrays of a snapshot, followed by the region's name; 1 in its cells.

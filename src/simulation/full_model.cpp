@@ -32,6 +32,10 @@ State FullModel::whole_of(const Model& side, const State& state) const {
   whole.velocities = vectors(state.velocities);
   whole.multipliers = multipliers(state.multipliers);
   whole.divided_until_s = state.divided_until_s;
+  for (const CellArray& of_side : state.signals) {
+    CellArray& all = whole.signals.emplace_back();
+    for (const CellId cell : mirror_.cells) all.push_back(of_side[cell.index()]);
+  }
   whole.trend = {.step_s = state.trend.step_s,
                  .earlier_s = state.trend.earlier_s,
                  .mean_velocities = vectors(state.trend.mean_velocities),
@@ -64,6 +68,7 @@ State FullModel::follow(const Model& side, const State& state) {
                                            .earlier_positions = earlier,
                                            .ahead = rates.ahead,
                                            .internals = state_.internals});
+  follow_signals(model_, next);
   return std::exchange(state_, std::move(next));
 }
 
@@ -72,18 +77,31 @@ void FullModel::go_to(const Model& side, const State& state, std::vector<std::ve
   state_.internals = std::move(internals);
 }
 
-std::vector<double> FullModel::take_activities(std::size_t law, const std::vector<double>& activities) {
-  for (std::size_t c = 0; c < activities.size(); ++c)
-    if (const CellId original = mirror_.original(CellId(c)); activities[c] != activities[original.index()])
+std::vector<double> FullModel::of_side(const std::string& what, const std::string& noun,
+                                       const std::vector<double>& values) const {
+  for (std::size_t c = 0; c < values.size(); ++c)
+    if (const CellId original = mirror_.original(CellId(c)); values[c] != values[original.index()])
       throw UsageError(
-          fmt::format("{}: cells {} and {} are mirror images, and their activities are {} and {}; give "
+          fmt::format("{}: cells {} and {} are mirror images, and their {} are {} and {}; give "
                       "both the same value, or remove embryo.mirror",
-                      model_.laws[law]->label(), c, original.index(), activities[c], activities[original.index()]));
-  std::vector<double> of_side;
+                      what, c, original.index(), noun, values[c], values[original.index()]));
+  std::vector<double> result;
   for (const CellId cell : mirror_.origins)
-    if (!activities.empty()) of_side.push_back(activities[cell.index()]);
+    if (!values.empty()) result.push_back(values[cell.index()]);
+  return result;
+}
+
+std::vector<double> FullModel::take_activities(std::size_t law, const std::vector<double>& activities) {
+  std::vector<double> side = of_side(model_.laws[law]->label(), "activities", activities);
   state_.internals[law] = model_.laws[law]->with_activities(state_.internals[law], activities);
-  return of_side;
+  return side;
+}
+
+CellArray FullModel::take_signal(std::size_t signal, const CellArray& values) {
+  CellArray side = of_side("signal " + model_.signals.rules()[signal].name, "concentrations", values);
+  state_.signals[signal] = values;
+  follow_signals(model_, state_);
+  return side;
 }
 
 }  // namespace plica

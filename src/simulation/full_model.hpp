@@ -1,6 +1,7 @@
 // Full model of a symmetric embryo of which one side is solved; used for output and measures.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mechanics/model.hpp"
@@ -31,8 +32,12 @@ class FullModel {
   /// Override activities of a law; cells of the full model. Returns those of the side. Throws UsageError unless mirror
   /// images have equal activities.
   std::vector<double> take_activities(std::size_t law, const std::vector<double>& activities);
+  /// Replace the concentrations of a signal, likewise.
+  CellArray take_signal(std::size_t signal, const CellArray& values);
 
  private:
+  [[nodiscard]] std::vector<double> of_side(const std::string& what, const std::string& noun,
+                                            const std::vector<double>& values) const;
   [[nodiscard]] State whole_of(const Model& side, const State& state) const;
 
   Model model_;

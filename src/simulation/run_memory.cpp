@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/clock.hpp"
 
 namespace plica {
@@ -39,6 +41,9 @@ std::optional<std::string> why_unfit(const RunMemory& run, const Model& model) {
       !none_or(state.trend.multiplier_rates.size(), multipliers) ||
       !none_or(run.energies.size(), model.laws.size() + 1))
     return "its state does not fit this embryo";
+  if (state.signals.size() != model.signals.size() ||
+      std::ranges::any_of(state.signals, [&](const CellArray& c) { return c.size() != model.tissue.cells.size(); }))
+    return "its signals do not fit this embryo";
   return why_unfit(state.internals, model);
 }
 

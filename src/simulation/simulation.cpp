@@ -1,6 +1,7 @@
 #include "simulation/simulation.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +12,7 @@
 
 #include "core/clock.hpp"
 #include "core/errors.hpp"
+#include "core/names.hpp"
 #include "measure/cell_columns.hpp"
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/division.hpp"
@@ -176,6 +178,27 @@ void Simulation::set_activity(const std::string& label, std::vector<double> acti
   now_.equilibrium_time_s.reset();
 }
 
+void Simulation::set_signal(const std::string& name, CellArray values) {
+  const std::vector<std::string> names = names_of(model_->signals.rules());
+  const auto place = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+  const std::size_t cells = model().tissue.cells.size();
+  if (place == names.size())
+    throw UsageError(names.empty() ? fmt::format("no signal \"{}\"; add [signal.{}] to the scenario", name, name)
+                                   : fmt::format("no signal \"{}\"; signals: {}", name, fmt::join(names, ", ")));
+  if (values.size() != cells)
+    throw UsageError(
+        fmt::format("signal {}: {} concentrations for {} cells; give one per cell", name, values.size(), cells));
+  for (std::size_t c = 0; c < cells; ++c)
+    if (!std::isfinite(values[c]))
+      throw UsageError(fmt::format("signal {}: the concentration of cell {} is {}; give a finite number", name,
+                                   id_of(model(), CellId(c)), values[c]));
+  if (full_model_) values = full_model_->take_signal(place, values);
+  now_.state.signals[place] = std::move(values);
+  follow_signals(*model_, now_.state);
+  now_.at_equilibrium = false;
+  now_.equilibrium_time_s.reset();
+}
+
 void Simulation::set_cell_array(const std::string& name, CellArray values) {
   const Tissue& tissue = model().tissue;
   const bool is_taken = is_plicas(name) || tissue.cell_arrays.contains(name) ||
@@ -296,6 +319,7 @@ bool Simulation::step(double until_s) {
   const double speed = max_speed(state);
   const std::vector<PlannedDivision> due = due_divisions(solved(), state, controls_.divisions);
   now_.at_equilibrium = speed < controls_.equilibrium_speed_um_per_s && due.empty() &&
+                        are_at_rest(before.signals, state.signals, state.time_s - before.time_s) &&
                         has_come(last_of(controls_.program_points_s), state.time_s) &&
                         has_come(last_of(controls_.program_jumps_s), before.time_s);
   if (now_.at_equilibrium && !now_.equilibrium_time_s) now_.equilibrium_time_s = state.time_s;
@@ -334,6 +358,24 @@ bool Simulation::has_stalled() {
   return true;
 }
 
+// Advance the signals to the end of a step, on its cells. False: they have none, and the run fails.
+bool Simulation::advance_signals(const Model& model, State& next) {
+  next.signals = now_.state.signals;
+  if (model.signals.empty()) return true;
+  const std::vector<double> before = model.volumes.volumes(now_.state.positions),
+                            after = model.volumes.volumes(next.positions);
+  const auto failure = model.signals.advance(model.tissue, {before, after, next.positions},
+                                             next.time_s - now_.state.time_s, next.signals);
+  if (failure) {
+    failed_cell_ = id_of(model, failure->cell);
+    failure_ =
+        fmt::format("{} in cell {} at t = {:g} s; {}", failure->problem, *failed_cell_, next.time_s, failure->remedy);
+    return false;
+  }
+  follow_signals(model, next);
+  return true;
+}
+
 // Advance the state by one step; `before` receives the old state. Empty, with the state unchanged, on failure or stop.
 std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
   State& next = before;
@@ -353,6 +395,7 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
       report.linear_solves += std::exchange(wasted_solves, 0);
     }
     if (solved && step_length_.accept(controls_, now_.state, next)) {
+      if (!advance_signals(model, next)) return std::nullopt;
       std::swap(now_.state, next);
       if (later) grown_ = std::move(later);
       ++now_.steps;

@@ -113,6 +113,9 @@ class Simulation {
   /// Throws UsageError for an unknown identifier, a wrong size or value, and asymmetric factors if one side is solved.
   void set_activity(const std::string& label, std::vector<double> activities);
 
+  /// Replace the concentrations of a signal; cells. Throws UsageError as set_activity does.
+  void set_signal(const std::string& name, CellArray values);
+
   /// Keep values of cells that snapshots and checkpoints carry along and no law reads, such as the state of a coupled
   /// model; daughters inherit them. Throws UsageError for the name of another array, a wrong size, or a value that is
   /// not finite.
@@ -130,6 +133,7 @@ class Simulation {
   [[nodiscard]] const Model& solved() const { return grown_ ? *grown_ : *model_; }
   bool has_stalled();
   std::optional<StepReport> take_step(double until_s, State& before);
+  bool advance_signals(const Model& model, State& next);
   void divide(const std::vector<PlannedDivision>& due);
   void restart_at_a_jump();
   EnergyFlow account_for_energy(const State& before);

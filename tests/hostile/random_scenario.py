@@ -5,7 +5,7 @@ need no change here. This module only adds what keeps runs short.
 """
 import math
 
-SEVERAL = {"region": (0, 3), "contraction": (0, 3), "hold": (0, 1), "pressure": (0, 2), "division": (-2, 1), "stop": (-1, 1),
+SEVERAL = {"region": (0, 3), "contraction": (0, 3), "hold": (0, 1), "pressure": (0, 2), "division": (-2, 1), "signal": (-1, 2), "stop": (-1, 1),
            "monitor": (0, 3), "expect": (-2, 1)}  # numbers of named tables: least (below 0: mostly none) and most
 MOST_ELEMENTS = 250
 MOST_STEPS = 60
@@ -16,6 +16,8 @@ def toml(value):
         return "true" if value else "false"
     if isinstance(value, str):
         return '"' + "".join(c if c.isprintable() and c not in '"\\' else f"\\u{ord(c):04X}" for c in value) + '"'
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {toml(one)}" for key, one in value.items()) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(map(toml, value)) + "]"
     return repr(value)
@@ -111,6 +113,8 @@ class Drawer:
             return sorted(map(abs, numbers)) if "time" in key.name or ".at_" in key.name else numbers
         if kind == "list of texts":
             return [self.word_of(path, key) for _ in range(r.randint(1, 2))]
+        if kind == "table of numbers":
+            return {"k": self.number(key)}
         raise ValueError(f"{path}.{key.name}: unknown type \"{kind}\"; add it to Drawer.value")
 
     def word_of(self, path, key):
@@ -118,10 +122,13 @@ class Drawer:
         r, stem = self.random, path.split(".")[0]
         if f"{stem}.{key.name}" in self.files:
             return r.choice(self.files[f"{stem}.{key.name}"])
-        if key.name in ("region", "from", "neighbours_of", "union", "intersect", "except"):
+        name = key.name.split(".")[-1]
+        if name in ("region", "initial_region", "from", "neighbours_of", "union", "intersect", "except"):
             return r.choice(["all", *self.names["region"]])
-        if key.name in self.names and self.names[key.name]:
-            return r.choice(self.names[key.name])
+        if self.names.get(name):
+            return r.choice(self.names[name])
+        if name == "reaction" and r.random() < 0.9:
+            return r.choice(["k * s0 * (1 - s0)", "k * (apical_area_ratio - 1)", "0.1 - s0^2", "1 / s0", "height_ratio * k - s1"])
         return "".join(r.choice("ab \"\\\n\tµ✓'#=[]{}") for _ in range(r.randint(1, 12)))
 
     def integer(self, key):

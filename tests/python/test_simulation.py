@@ -338,6 +338,28 @@ def test_wrong_times(sim):
         sim.run(resume=True)
 
 
+def test_signals_are_read_and_written():
+    sim = plica.Simulation({"embryo": {"shape": "sheet", "length_um": 30, "width_um": 30, "cell_height_um": 10, "cell_count": 20},
+                            "dynamics": {"surface_drag_Pa_s_per_um": 30}, "time": {"end_min": 2}, "stop": {"at_equilibrium": False},
+                            "signal": {"u": {"decay_per_min": 0.5}, "v": {"initial": 2, "reaction": "k * u", "constants": {"k": 3}}},
+                            "cortex": {"a": {"region": "all", "tension_mN_per_m": 1, "follow": {"signal": "u", "from": 0, "to": 1}}}})
+    assert set(sim.signals) == {"u", "v"} and (sim.signals["v"] == 2).all()
+    with pytest.raises(ValueError, match='no signal "w"; signals: u, v'):
+        sim.signals["w"] = 1
+    with pytest.raises(ValueError, match="signals"):
+        sim.signals["u"] = [1, 2]
+    with pytest.raises(ValueError, match="finite"):
+        sim.signals["u"] = np.nan
+    sim.signals["u"] = sim.cell_data["x_um"] > 0
+    assert (sim.activity("cortex.a") == sim.signals["u"]).all() and sim.signals["u"].sum() > 5
+    fork = pickle.loads(pickle.dumps(sim))
+    sim.run(), fork.run()
+    assert (sim.signals["u"] == fork.signals["u"]).all() and (sim.cell_data["signal_u"] == sim.signals["u"]).all()
+    assert sim.signals["u"].max() == pytest.approx(np.exp(-1)) and sim.signals["v"].max() > 4
+    with pytest.raises(TypeError, match="signals: arrays cannot be removed"):
+        del sim.signals["u"]
+
+
 def test_arrays_of_ones_own_are_kept(sim, tmp_path):
     signal = np.random.default_rng(1).random(756)
     sim.cell_data["signal"] = signal

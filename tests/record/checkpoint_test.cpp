@@ -203,7 +203,7 @@ TEST_F(CheckpointTest, DamageUnderARightChecksumIsRefusedOrHarmless) {
 TEST_F(CheckpointTest, AnotherFormatIsNamed) {
   std::string bytes = checkpoint_bytes(block_run().last());
   const std::string mark = fmt::format("\nplica checkpoint {} ", checkpoint_format);
-  for (const char* format : {"9  ", "1  ", "11 ", "13 ", "121", "0  "}) {
+  for (const char* format : {"9  ", "1  ", "12 ", "14 ", "121", "0  "}) {
     std::string other = bytes;
     other.replace(bytes.size() - trailer_bytes + mark.size() - 3, 3, format);
     EXPECT_SAYS(error_of<FileError>([&] { return read_checkpoint_bytes(other); }), "format");
@@ -291,7 +291,8 @@ TEST_F(CheckpointTest, WhatDoesNotFitTheEmbryoIsNamed) {
   unfit([](RunMemory& m) { m.pace.since_s = m.state.time_s + 1; });
   unfit([](RunMemory& m) { m.pace.steps = -1; });
   unfit([](RunMemory& m) { m.state.internals.pop_back(); });
-  EXPECT_EQ(cases, 17);
+  unfit([](RunMemory& m) { m.state.signals.emplace_back(); });
+  EXPECT_EQ(cases, 18);
 }
 
 // A law whose memory has another length in this version would read past its end.

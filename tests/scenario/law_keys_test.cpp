@@ -32,7 +32,7 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
        "4: cortex.a.profile.about: region \"belly\" does not exist; use one of: all"},
       {cortex + "tension_mN_per_m = 1\ntrigger = { below = 0.3 }",
        "4: cortex.a.trigger.measure: is missing; set measure to one of: apical_area_ratio | basal_area_ratio | "
-       "height_ratio | apical_stretch"},
+       "height_ratio | apical_stretch; or set signal"},
       {cortex + "tension_mN_per_m = 1\ntrigger = { measure = \"height_ratio\" }",
        "4: cortex.a.trigger.below: is missing; set either below or above"},
       {cortex + "tension_mN_per_m = 1\nfollow = { measure = \"height_ratio\", from = 1, to = 1 }",

@@ -62,6 +62,10 @@ variation = { spread = 0.2, seed = 5 }
 [contraction.f]
 region = "a"
 profile = { shape = "gaussian", axis = "along", sigma_um = 30 }
+[signal.u]
+reaction = "k * u"
+constants = { k = 0.5, b = -1 }
+source = { region = "a", per_min = 2 }
 [hold.d]
 region = "a"
 directions = ["y"]

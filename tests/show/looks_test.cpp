@@ -27,6 +27,16 @@ Vec3 lab_of(const Rgb& rgb) {
   return {116 * f[1] - 16, 500 * (f[0] - f[1]), 200 * (f[1] - f[2])};
 }
 
+TEST(Fields, SignalsAreAmongThem) {
+  Frame frame;
+  frame.element_scalars = {{"signal_u", {0, 2}}, {"region_a", {0, 1}}, {"twi", {1, 1}}};
+  std::vector<std::string> titles;
+  for (const ColourField& field : fields_of(frame))
+    if (std::ranges::count(colour_fields(), field.name, &ColourField::name) == 0)
+      titles.push_back(field.name + ": " + field.title());
+  EXPECT_EQ(titles, (std::vector<std::string>{"signal_u: signal u", "twi: twi"}));
+}
+
 const ColourMap& map_named(const std::string& name) {
   return *std::ranges::find(colour_maps(), name, &ColourMap::name);
 }

@@ -35,11 +35,11 @@ struct Fields {
   }
 
   void take_state(const State& state) {
-    const auto& [time_s, positions, velocities, multipliers, obstacle_forces, on_obstacle, internals, divided_until_s,
-                 trend] = state;
+    const auto& [time_s, positions, velocities, multipliers, obstacle_forces, on_obstacle, internals, signals,
+                 divided_until_s, trend] = state;
     take("time_s", time_s), take("positions", positions), take("velocities", velocities);
     take("multipliers", multipliers), take("obstacle_forces", obstacle_forces), take("on_obstacle", on_obstacle);
-    take("internals", internals), take("divided_until_s", divided_until_s);
+    take("internals", internals), take("signals", signals), take("divided_until_s", divided_until_s);
     const auto& [step_s, earlier_s, mean_velocities, accelerations, multiplier_rates] = trend;
     take("trend.step_s", step_s), take("trend.earlier_s", earlier_s), take("trend.mean_velocities", mean_velocities);
     take("trend.accelerations", accelerations), take("trend.multiplier_rates", multiplier_rates);
@@ -109,6 +109,7 @@ Checkpoint marked(Checkpoint checkpoint) {
   run.state.obstacle_forces = {0.5, 0, 2};
   run.state.on_obstacle = {1, 0, 1};
   run.state.internals = {{1, 2}, {}, {3}};
+  run.state.signals = {{0.5, 2}, {4, 0.25}};
   run.careful_steps = 3;
   run.pace.since_s = 1.5;
   run.outside_arrays = {{"signal", {0.5, 2}}, {"time of birth", {1, 3}}};

@@ -22,6 +22,7 @@ inline void expect_same(const State& a, const State& b) {
   EXPECT_EQ(a.trend.accelerations, b.trend.accelerations);
   EXPECT_EQ(a.trend.multiplier_rates, b.trend.multiplier_rates);
   EXPECT_EQ(a.internals, b.internals);
+  EXPECT_EQ(a.signals, b.signals);
 }
 
 /// A fresh simulation goes on from a moment: by the bytes of a checkpoint, where this plica has them.

@@ -271,6 +271,16 @@ std::vector<double> Cortex::next_internal(const Step& step) const {
   return joined(std::move(internal), before.given.internal());
 }
 
+std::vector<double> Cortex::with_signals(std::span<const double> internal, std::span<const CellArray> signals,
+                                         double time_s) const {
+  std::vector<double> result(internal.begin(), internal.end());
+  const std::span<const double> before = memory(internal).activation;
+  if (!before.empty())
+    std::ranges::copy(activation_.of_signals(signals, time_s, before),
+                      result.begin() + (before.data() - internal.data()));
+  return result;
+}
+
 // Origin of a face: the earlier face with the same nodes, else all between the same cells; none between daughters.
 class Cortex::Origins {
  public:

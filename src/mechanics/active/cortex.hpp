@@ -68,6 +68,8 @@ class Cortex final : public BatchLaw<Cortex, 4> {
                                                     std::span<const double> activities) const override {
     return memory(internal).given.put(internal, activities);
   }
+  [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
+                                                 double time_s) const override;
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }

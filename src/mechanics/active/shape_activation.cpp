@@ -26,7 +26,7 @@ std::vector<Eigen::RowVector2d> mean_gradient(std::span<const Vec3> polygon) {
 
 ShapeActivation::ShapeActivation(const Tissue& tissue, const ShapeActivationRule& rule)
     : rule_(rule), at_rest_(tissue.cells.size(), 0.0) {
-  if (!is_used()) return;
+  if (!is_used() || rule.signal) return;
   if (rule.measure == ShapeMeasure::height_ratio) {
     for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
       const Cell& cell = tissue.cells[c];
@@ -76,7 +76,19 @@ std::vector<double> ShapeActivation::ratios(std::span<const Vec3> positions) con
 std::vector<double> ShapeActivation::internal(std::span<const Vec3> positions, double time_s,
                                               std::span<const double> before) const {
   if (!is_used()) return {};
-  std::vector<double> values = ratios(positions);
+  if (!rule_.signal) return next(ratios(positions), time_s, before);
+  if (before.empty()) return std::vector<double>(at_rest_.size(), starts() ? not_yet : 0);
+  return {before.begin(), before.end()};
+}
+
+std::vector<double> ShapeActivation::of_signals(std::span<const CellArray> signals, double time_s,
+                                                std::span<const double> before) const {
+  if (!rule_.signal) return {before.begin(), before.end()};
+  return next(signals[*rule_.signal], time_s, before);
+}
+
+std::vector<double> ShapeActivation::next(std::vector<double> values, double time_s,
+                                          std::span<const double> before) const {
   for (std::size_t c = 0; c < values.size(); ++c) {
     const double ratio = values[c];
     if (!starts()) {

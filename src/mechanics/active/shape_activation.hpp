@@ -1,9 +1,11 @@
-// Shape-dependent, cell-autonomous activity: a program that starts at a threshold of area, height or stretch, or an
-// activity that follows it (docs/theory/cortex.md, "Time-prescribed and shape-dependent activity").
+// Cell-autonomous activity: a program that starts at a threshold of area, height, stretch or a signal, or an activity
+// that follows it (docs/theory/cortex.md, "Time-prescribed and shape-dependent activity").
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "tissue/tissue.hpp"
@@ -14,13 +16,18 @@ namespace plica {
 /// largest stretch.
 enum class ShapeMeasure { apical_area_ratio, basal_area_ratio, height_ratio, apical_stretch };
 
-/// Rule by which cells start, or follow their shape. Cell numbers are those at the beginning of a step.
+/// Their names in scenarios and reactions, in order.
+inline constexpr std::array<std::string_view, 4> shape_measure_names = {"apical_area_ratio", "basal_area_ratio",
+                                                                        "height_ratio", "apical_stretch"};
+
+/// Rule by which cells start, or follow their shape or a signal. Cell numbers are those at the beginning of a step.
 struct ShapeActivationRule {
   enum class Kind { none, starts_below, starts_above, follows };
   Kind kind = Kind::none;
   ShapeMeasure measure = ShapeMeasure::apical_area_ratio;
-  double threshold = 1;     // for both triggers
-  double from = 1, to = 0;  // follow: activity 0 up to `from`, 1 beyond `to`, linear between
+  double threshold = 1;                    // for both triggers
+  double from = 1, to = 0;                 // follow: activity 0 up to `from`, 1 beyond `to`, linear between
+  std::optional<std::size_t> signal = {};  // place among the model's signals, which replaces the measure
 };
 
 /// State, one number per cell: start time (s) or `not_yet` for cells with a trigger, or progress from 0 to 1 for cells
@@ -37,11 +44,16 @@ class ShapeActivation {
   /// Return the state at given positions and time from the previous state (empty before the first step).
   [[nodiscard]] std::vector<double> internal(std::span<const Vec3> positions, double time_s,
                                              std::span<const double> before) const;
+  /// Return it from the signals of a state (cells, by signal) if the rule reads one; otherwise `before`.
+  [[nodiscard]] std::vector<double> of_signals(std::span<const CellArray> signals, double time_s,
+                                               std::span<const double> before) const;
 
   /// Return the quantity of each cell.
   [[nodiscard]] std::vector<double> ratios(std::span<const Vec3> positions) const;
 
  private:
+  [[nodiscard]] std::vector<double> next(std::vector<double> values, double time_s,
+                                         std::span<const double> before) const;
   [[nodiscard]] std::vector<double> sizes(std::span<const Vec3> positions) const;
 
   ShapeActivationRule rule_;

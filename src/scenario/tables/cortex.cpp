@@ -3,6 +3,7 @@
 
 #include <fmt/ranges.h>
 
+#include "scenario/suggest.hpp"
 #include "scenario/tables/table.hpp"
 
 namespace plica {
@@ -34,50 +35,75 @@ void check_effect(const std::string& table, const CortexInput& cortex, Input& in
         "stiffness_mN_per_m");
 }
 
-void check_shape_activation(const std::string& table, const CortexInput& cortex, Input& input) {
-  const auto& [measure, below, above] = cortex.trigger;
+// Checks what a cell reads; false: nothing, or an error.
+bool check_activation(const std::string& part, const ActivationInput& activation, bool has_bounds,
+                      const Scenario& scenario, Input& input) {
+  if (!input.sound(part + ".measure") || !input.sound(part + ".signal")) return false;
+  const auto report = [&](const std::string& key, const std::string& problem, const std::string& remedy) {
+    input.report(part + key, problem, remedy);
+    return false;
+  };
+  if (!activation.is_used() && has_bounds)
+    return report(
+        ".measure", "is missing",
+        fmt::format("set measure to one of: {}; or set signal", fmt::join(words_of(words::shape_measures), " | ")));
+  if (!activation.measure.empty() && !activation.signal.empty())
+    return report(".signal", "conflicts with `measure`, which is also set", "remove one of them");
+  if (activation.signal.empty() || scenario.signals.contains(activation.signal)) return activation.is_used();
+  const std::string problem = fmt::format("no signal \"{}\"", activation.signal);
+  if (scenario.signals.empty()) return report(".signal", problem, fmt::format("add [signal.{}]", activation.signal));
+  return report(".signal", problem, did_you_mean(activation.signal, keys_of(scenario.signals)));
+}
+
+void check_shape_activation(const std::string& table, const CortexInput& cortex, const Scenario& scenario,
+                            Input& input) {
+  const TriggerInput& trigger = cortex.trigger;
   const FollowInput& follow = cortex.follow;
   for (const std::string& part : {table, table + ".trigger", table + ".follow"})
     if (!input.sound(part)) return;
   const auto report = [&](const std::string& key, const std::string& problem, const std::string& remedy) {
     if (input.sound(table + key)) input.report(table + key, problem, remedy);
   };
-  const std::string measures =
-      fmt::format("set measure to one of: {}", fmt::join(words_of(words::shape_measures), " | "));
-  if (measure.empty() && (below || above)) report(".trigger.measure", "is missing", measures);
-  if (!measure.empty() && below.has_value() == above.has_value())
-    report(below ? ".trigger.above" : ".trigger.below", below ? "conflicts with below" : "is missing",
-           "set either below or above");
-  if (!measure.empty() && cortex.delay.speed_um_per_s)
-    report(".trigger", "conflicts with `delay`, which activates cells at prescribed times", "remove one of them");
-  if (follow.measure.empty() && (follow.from || follow.to)) report(".follow.measure", "is missing", measures);
-  if (follow.measure.empty()) return;
+  if (check_activation(table + ".trigger", trigger, trigger.below || trigger.above, scenario, input)) {
+    if (trigger.below.has_value() == trigger.above.has_value())
+      report(trigger.below ? ".trigger.above" : ".trigger.below", trigger.below ? "conflicts with below" : "is missing",
+             "set either below or above");
+    if (cortex.delay.speed_um_per_s)
+      report(".trigger", "conflicts with `delay`, which activates cells at prescribed times", "remove one of them");
+  }
+  if (!check_activation(table + ".follow", follow, follow.from || follow.to, scenario, input)) return;
   if (!follow.from) report(".follow.from", "is missing", "set `from` to the value at which the factor is 0");
   if (!follow.to) report(".follow.to", "is missing", "set `to` to the value at which the factor is 1");
   if (follow.from && follow.from == follow.to) report(".follow.to", "equals `from`", "set `to` to a different value");
-  if (!measure.empty()) report(".follow", "conflicts with `trigger`", "remove one of them");
+  if (trigger.is_used()) report(".follow", "conflicts with `trigger`", "remove one of them");
   if (cortex.tension_mN_per_m == 0 && input.place(table + ".tension_mN_per_m") == nullptr)
     report(".follow", "is not used without tension_mN_per_m", "remove it, or set tension_mN_per_m");
 }
 
-void check_cortex(const std::string& table, CortexInput& cortex, const Scenario&, Input& input) {
+void check_cortex(const std::string& table, CortexInput& cortex, const Scenario& scenario, Input& input) {
   check_program(table, cortex.stiffness_program, input, "stiffness_program");
   check_effect(table, cortex, input);
-  check_shape_activation(table, cortex, input);
+  check_shape_activation(table, cortex, scenario, input);
 }
 
-ShapeActivationRule make_shape_activation(const CortexInput& input) {
+ShapeActivationRule make_shape_activation(const CortexInput& input, const Scenario& scenario) {
   ShapeActivationRule rule;
-  const auto& [measure, below, above] = input.trigger;
-  if (!measure.empty()) {
+  const auto read = [&](const ActivationInput& activation) {
+    rule.measure = meaning_of(words::shape_measures, activation.measure, rule.measure);
+    const auto signal = scenario.signals.find(activation.signal);
+    if (signal != scenario.signals.end())
+      rule.signal = static_cast<std::size_t>(std::distance(scenario.signals.begin(), signal));
+  };
+  if (input.trigger.is_used()) {
+    const std::optional<double>& below = input.trigger.below;
     rule.kind = below ? ShapeActivationRule::Kind::starts_below : ShapeActivationRule::Kind::starts_above;
-    rule.measure = meaning_of(words::shape_measures, measure);
-    rule.threshold = below ? *below : *above;
-  } else if (!input.follow.measure.empty()) {
+    rule.threshold = below ? *below : *input.trigger.above;
+    read(input.trigger);
+  } else if (input.follow.is_used()) {
     rule.kind = ShapeActivationRule::Kind::follows;
-    rule.measure = meaning_of(words::shape_measures, input.follow.measure);
     rule.from = *input.follow.from;
     rule.to = *input.follow.to;
+    read(input.follow);
   }
   return rule;
 }
@@ -95,7 +121,7 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
     rule.relaxation_s = input.relaxation_s.value_or(0);
     rule.program = make_program(input.program);
     rule.stiffness_program = make_program(input.stiffness_program);
-    rule.activation = make_shape_activation(input);
+    rule.activation = make_shape_activation(input, scenario);
     const std::string table = "cortex." + name;
     CellPattern pattern = make_ablated_pattern(scenario, table, input, origin);
     model.laws.push_back(std::make_unique<Cortex>(model.tissue, std::move(pattern), std::move(rule)));
@@ -109,8 +135,8 @@ void describe(const X& input, const Scenario& scenario, Acting& acting) {
   acting.contracts = input.faces == "apical" && input.tension_mN_per_m > 0;
   // A tension that falls with the area on which it acts ends softly by itself.
   acting.is_constant = input.faces != "lateral" && input.tension_mN_per_m > 0 && input.saturation_ratio == 0 &&
-                       input.stiffness_mN_per_m == 0 && input.crowding_mN_per_m == 0 && input.follow.measure.empty();
-  acting.has_sudden_onset = input.tension_mN_per_m > 0 && input.trigger.measure.empty() && input.follow.measure.empty();
+                       input.stiffness_mN_per_m == 0 && input.crowding_mN_per_m == 0 && !input.follow.is_used();
+  acting.has_sudden_onset = input.tension_mN_per_m > 0 && !input.trigger.is_used() && !input.follow.is_used();
   acting.forces = {{"tension_mN_per_m", input.tension_mN_per_m,
                     scenario.elasticity.young_modulus_Pa * units::pascal * scenario.embryo.cell_height_um}};
 }
@@ -146,10 +172,14 @@ ScenarioTable cortex_table() {
                    {
                        row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::shape_measures),
                            "Measure that starts the time courses."),
+                       row("trigger.signal", &X::trigger, &TriggerInput::signal, anything,
+                           "Instead of `measure`: name of a `[signal.NAME]`."),
                        row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
                        row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
                        row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::shape_measures),
                            "Measure that scales the active tension."),
+                       row("follow.signal", &X::follow, &FollowInput::signal, anything,
+                           "Instead of `measure`: name of a `[signal.NAME]`."),
                        row("follow.from", &X::follow, &FollowInput::from, not_negative,
                            "Value at which, and before which, the factor is 0."),
                        row("follow.to", &X::follow, &FollowInput::to, not_negative,

@@ -46,9 +46,9 @@ struct KeyRows {
     return {path, key, slot, std::move(allowed), meaning, std::move(options)};
   }
 
-  /// Makes a row of an inner table.
-  template <class Base, class Inner, class T>
-  KeyRow operator()(std::string_view key, Inner Base::*inner, T Inner::*field, Allowed allowed,
+  /// Makes a row of an inner table, or of its base.
+  template <class Base, class Inner, class InnerBase, class T>
+  KeyRow operator()(std::string_view key, Inner Base::*inner, T InnerBase::*field, Allowed allowed,
                     std::string_view meaning, KeyOptions options = {}) const {
     const auto slot = [=, table = table](Scenario& scenario, const std::string& name) -> Slot {
       return &(table(scenario, name).*inner.*field);
