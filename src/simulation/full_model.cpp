@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/errors.hpp"
+#include "mechanics/derivatives.hpp"
 #include "solver/step/backward_difference.hpp"
 
 namespace plica {
@@ -72,17 +73,29 @@ void FullModel::go_to(const Model& side, const State& state, std::vector<std::ve
   state_.internals = std::move(internals);
 }
 
-std::vector<double> FullModel::take_activities(std::size_t law, const std::vector<double>& activities) {
-  for (std::size_t c = 0; c < activities.size(); ++c)
-    if (const CellId original = mirror_.original(CellId(c)); activities[c] != activities[original.index()])
+// Values of the cells of the side, if mirror images have equal ones.
+std::vector<double> FullModel::of_side(std::size_t law, const char* what, const std::vector<double>& values) const {
+  for (std::size_t c = 0; c < values.size(); ++c)
+    if (const CellId original = mirror_.original(CellId(c)); values[c] != values[original.index()])
       throw UsageError(
-          fmt::format("{}: cells {} and {} are mirror images, and their activities are {} and {}; give "
-                      "both the same value, or remove embryo.mirror",
-                      model_.laws[law]->label(), c, original.index(), activities[c], activities[original.index()]));
+          fmt::format("{}: cells {} and {} are mirror images, and their {} are {} and {}; give both the "
+                      "same value, or remove embryo.mirror",
+                      model_.laws[law]->label(), c, original.index(), what, values[c], values[original.index()]));
   std::vector<double> of_side;
   for (const CellId cell : mirror_.origins)
-    if (!activities.empty()) of_side.push_back(activities[cell.index()]);
+    if (!values.empty()) of_side.push_back(values[cell.index()]);
+  return of_side;
+}
+
+std::vector<double> FullModel::take_activities(std::size_t law, const std::vector<double>& activities) {
+  std::vector<double> of_side = this->of_side(law, "activities", activities);
   state_.internals[law] = model_.laws[law]->with_activities(state_.internals[law], activities);
+  return of_side;
+}
+
+std::vector<double> FullModel::scale_strengths(std::size_t law, const std::vector<double>& factors) {
+  std::vector<double> of_side = this->of_side(law, "strengths", factors);
+  model_.laws[law] = with_strengths(*model_.laws[law], factors);
   return of_side;
 }
 

@@ -32,7 +32,14 @@ class FullModel {
   /// images have equal activities.
   std::vector<double> take_activities(std::size_t law, const std::vector<double>& activities);
 
+  /// Multiply the strengths of cells in a law; cells of the full model. Returns the factors of the side. Throws
+  /// UsageError unless mirror images have equal factors.
+  std::vector<double> scale_strengths(std::size_t law, const std::vector<double>& factors);
+
+  [[nodiscard]] const Mirror& mirror() const { return mirror_; }
+
  private:
+  [[nodiscard]] std::vector<double> of_side(std::size_t law, const char* what, const std::vector<double>& values) const;
   [[nodiscard]] State whole_of(const Model& side, const State& state) const;
 
   Model model_;
