@@ -303,6 +303,7 @@ NB_MODULE(_core, module) {
       nb::arg("field"), nb::arg("smallest"), nb::arg("largest"));
   bind_simulation(module);
   bind_study(module);
+  bind_tapes(module);
 }
 
 }  // namespace plica::python

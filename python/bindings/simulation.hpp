@@ -82,5 +82,6 @@ class SimulationOf {
 
 void bind_simulation(nb::module_& module);
 void bind_study(nb::module_& module);
+void bind_tapes(nb::module_& module);
 
 }  // namespace plica::python

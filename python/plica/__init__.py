@@ -28,6 +28,7 @@ from .simulation import Simulation, Step, load
 from .studio import studio
 from .study import Study
 from .studies import Calibration, Comparison, Trial, calibrate, compare
+from .tapes import GradientCheck, Tape, check_gradient, record
 from .tissue import Tissue
 from .volumes import tissue_of_labels
 
@@ -39,6 +40,7 @@ __all__ = [
     "FileError",
     "Frame",
     "Frames",
+    "GradientCheck",
     "MissingExtra",
     "NumericsError",
     "PlicaError",
@@ -51,11 +53,13 @@ __all__ = [
     "SobolIndices",
     "Step",
     "Study",
+    "Tape",
     "Tissue",
     "Trial",
     "__version__",
     "builtin_scenarios",
     "calibrate",
+    "check_gradient",
     "compare",
     "load",
     "movie",
@@ -65,6 +69,7 @@ __all__ = [
     "polygons_of_monolayer",
     "polygons_of_outlines",
     "posterior",
+    "record",
     "render",
     "reproduce",
     "studio",

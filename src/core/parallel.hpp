@@ -102,11 +102,16 @@ inline double parallel_dot(std::span<const double> a, std::span<const double> b)
   return total;
 }
 
-/// Sum of squared lengths, summed as parallel_dot does.
-inline double parallel_squared_norm(std::span<const Vec3> vectors) {
+/// The same of vectors of nodes.
+inline double parallel_dot(std::span<const Vec3> a, std::span<const Vec3> b) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
-  const std::span numbers(reinterpret_cast<const double*>(vectors.data()), 3 * vectors.size());
-  return parallel_dot(numbers, numbers);
+  const auto numbers = [](std::span<const Vec3> vectors) {
+    return std::span(reinterpret_cast<const double*>(vectors.data()), 3 * vectors.size());
+  };
+  return parallel_dot(numbers(a), numbers(b));
 }
+
+/// Sum of squared lengths, summed as parallel_dot does.
+inline double parallel_squared_norm(std::span<const Vec3> vectors) { return parallel_dot(vectors, vectors); }
 
 }  // namespace plica

@@ -164,10 +164,26 @@ void follow_division(FurrowSites& sites, const Tissue& tissue, const TissueChang
 }
 
 std::optional<double> furrow_depth_um(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions) {
-  std::optional<double> depth;
-  for (const SurfacePoint& point : cut_without_dimples(tissue, positions, axis_y, facets_of(tissue, sites.contractile)))
-    depth = std::max(depth.value_or(-1e300), depth_of(tissue, point, sites.outward, positions));
-  return depth;
+  const auto deepest = deepest_point(tissue, sites, positions);
+  return deepest ? std::optional(depth_of(tissue, *deepest, sites.outward, positions)) : std::nullopt;
+}
+
+std::optional<SurfacePoint> deepest_point(const Tissue& tissue, const FurrowSites& sites,
+                                          std::span<const Vec3> positions) {
+  std::optional<SurfacePoint> deepest;
+  double depth = 0;
+  for (const SurfacePoint& point :
+       cut_without_dimples(tissue, positions, axis_y, facets_of(tissue, sites.contractile))) {
+    const double here = depth_of(tissue, point, sites.outward, positions);
+    if (deepest && here <= depth) continue;
+    deepest = point;
+    depth = here;
+  }
+  return deepest;
+}
+
+double inward_depth_um(const Tissue& tissue, const FurrowSites& sites, const Vec3& place) {
+  return tissue.outer_shape ? tissue.outer_shape->depth(place, sites.outward) : -place.dot(sites.outward);
 }
 
 LipShape lip_shape(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions) {

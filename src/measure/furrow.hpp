@@ -38,6 +38,14 @@ void follow_division(FurrowSites& sites, const Tissue& tissue, const TissueChang
 /// empty without a midline.
 std::optional<double> furrow_depth_um(const Tissue& tissue, const FurrowSites& sites, std::span<const Vec3> positions);
 
+/// Point of this depth: the apical midline of the furrow cells at its deepest.
+std::optional<SurfacePoint> deepest_point(const Tissue& tissue, const FurrowSites& sites,
+                                          std::span<const Vec3> positions);
+
+/// Distance of a place from the shell, opposite to `outward`, um; without a shell its distance from the origin along
+/// it.
+double inward_depth_um(const Tissue& tissue, const FurrowSites& sites, const Vec3& place);
+
 /// Cross-section of the furrow at x = 0; missing values are empty.
 struct LipShape {
   std::optional<double> depth_below_lips_um;         // from the mean of the lips to the furrow bottom

@@ -23,6 +23,7 @@ struct Tissue;
 struct Model;
 struct TissueChange;
 struct CellPattern;
+class LawDerivatives;
 template <class Value>
 struct ByCell;
 using CellArray = ByCell<double>;
@@ -239,11 +240,19 @@ class Law {
   /// Return region, amplitudes and ablations of a law that acts by cells; null for others.
   [[nodiscard]] virtual const CellPattern* pattern() const { return nullptr; }
 
+  /// Return its derivatives for gradients of runs (derivatives.hpp). Throws NoGradient, with what the user can do, if
+  /// it has none.
+  [[nodiscard]] virtual const LawDerivatives& derivatives() const;
+
   /// Whether a sheet of few of its elements through the height bends too far (measure/bending_error.hpp).
   [[nodiscard]] virtual bool overbends() const { return false; }
 
   /// Return nodal masses, g; empty for none. At most one law of a model has masses.
   [[nodiscard]] virtual std::span<const double> masses() const { return {}; }
+
+ protected:
+  /// Throw NoGradient for this law: what has no derivatives, and what the user can do.
+  [[noreturn]] void refuse_gradient(std::string_view why) const;
 
  private:
   /// Compute its data of an element from the rest shape.
@@ -251,5 +260,8 @@ class Law {
 
   std::string label_;
 };
+
+/// Derivatives of every law whose forces depend on positions at the end of a step and on time only.
+const LawDerivatives& static_derivatives();
 
 }  // namespace plica

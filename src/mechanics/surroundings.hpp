@@ -5,6 +5,7 @@
 
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/active/program.hpp"
+#include "mechanics/derivatives.hpp"
 #include "mechanics/energy.hpp"
 #include "tissue/tissue.hpp"
 
@@ -78,7 +79,7 @@ class NodeLaw : public Law {
 };
 
 /// Drag on apical and basal faces: force -d v, with d from reference face areas, a quarter of each facet per corner.
-class SurfaceDrag final : public NodeLaw<SurfaceDrag> {
+class SurfaceDrag final : public NodeLaw<SurfaceDrag>, public LawDerivatives {
  public:
   /// Make the law with `drag` in nN s/um^3 (1 Pa s/um is 1e-3).
   SurfaceDrag(const Tissue& tissue, double drag);
@@ -86,6 +87,12 @@ class SurfaceDrag final : public NodeLaw<SurfaceDrag> {
   [[nodiscard]] std::string_view name() const override { return "drag"; }
   [[nodiscard]] double rounding(const Step& step, double position_rounding) const override {
     return norm() / step.rate_s * position_rounding;
+  }
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
+  void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                          const BeginningGradient& gradient) const override {
+    for (std::size_t n = 0; n < coefficients_.size(); ++n)
+      gradient.add_before(n, coefficients_[n] / step.rate_s * adjoint[n]);
   }
 
  private:
@@ -152,6 +159,7 @@ class FacePressure final : public Law {
   }
   void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}  // constant force
   void add_tangent(const Step&, TangentSink&) const override {}
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
   [[nodiscard]] std::vector<double> program_points_s() const override { return program_.times_s(); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.jumps_s(); }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/errors.hpp"
+#include "mechanics/derivatives.hpp"
 #include "solver/step/backward_difference.hpp"
 
 namespace plica {
@@ -101,6 +102,12 @@ CellArray FullModel::take_signal(std::size_t signal, const CellArray& values) {
   CellArray side = of_side("signal " + model_.signals.rules()[signal].name, "concentrations", values);
   state_.signals[signal] = values;
   follow_signals(model_, state_);
+  return side;
+}
+
+std::vector<double> FullModel::scale_strengths(std::size_t law, const std::vector<double>& factors) {
+  std::vector<double> side = of_side(model_.laws[law]->label(), "strengths", factors);
+  model_.laws[law] = with_strengths(*model_.laws[law], factors);
   return side;
 }
 

@@ -35,6 +35,12 @@ class FullModel {
   /// Replace the concentrations of a signal, likewise.
   CellArray take_signal(std::size_t signal, const CellArray& values);
 
+  /// Multiply the strengths of cells in a law; cells of the full model. Returns the factors of the side. Throws
+  /// UsageError unless mirror images have equal factors.
+  std::vector<double> scale_strengths(std::size_t law, const std::vector<double>& factors);
+
+  [[nodiscard]] const Mirror& mirror() const { return mirror_; }
+
  private:
   [[nodiscard]] std::vector<double> of_side(const std::string& what, const std::string& noun,
                                             const std::vector<double>& values) const;

@@ -80,6 +80,9 @@ class Simulation {
   /// cells grow makes another.
   [[nodiscard]] const Model& model() const { return full_model_ ? full_model_->model() : solved(); }
   [[nodiscard]] const State& state() const { return full_model_ ? full_model_->state() : now_.state; }
+  /// Model and state that are solved: of one side if mirror planes leave one, else of the whole embryo.
+  [[nodiscard]] const Model& solved_model() const { return solved(); }
+  [[nodiscard]] const State& solved_state() const { return now_.state; }
   [[nodiscard]] double time_s() const { return now_.state.time_s; }
   [[nodiscard]] int steps() const { return now_.steps; }
   [[nodiscard]] int divisions() const { return now_.divisions; }

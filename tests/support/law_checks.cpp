@@ -1,5 +1,6 @@
 #include "support/law_checks.hpp"
 
+#include "mechanics/derivatives.hpp"
 #include "mechanics/energy.hpp"
 
 namespace plica::support {
@@ -134,6 +135,78 @@ void check_derivatives(const Law& law, const Tissue& tissue, double size_um, int
     expect_assembled_is_matrix_free(law, motion, static_cast<unsigned>(100 + seed));
   }
   ::testing::Test::RecordProperty("random_motions", cases);
+}
+
+void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um, const std::vector<double>& internal,
+                           double tolerance) {
+  const LawDerivatives& derivatives = law.derivatives();
+  const std::size_t nodes = tissue.node_count();
+  for (const unsigned seed : {2U, 3U}) {  // of both orders
+    Motion motion = random_motion(tissue, size_um, seed);
+    motion.internal = internal;
+    Random random(seed);
+    const Vectors adjoint = random.vectors(nodes);
+    const auto along = [&](const Law& of, const Motion& m) { return flat(adjoint).dot(flat(forces_of(of, m.step()))); };
+    Vectors previous(nodes, Vec3::Zero()), earlier = previous, positions = previous;
+    std::vector<double> by_internal(internal.size(), 0.0), of_next(internal.size());
+    const auto cleared = [&] {
+      for (Vectors* vectors : {&previous, &earlier, &positions}) vectors->assign(nodes, Vec3::Zero());
+      by_internal.assign(internal.size(), 0.0);
+      return BeginningGradient{motion.ahead, previous, earlier, by_internal};
+    };
+    // A change of everything: of positions by vectors, of numbers by numbers.
+    const Vectors d_previous = random.vectors(nodes), d_earlier = random.vectors(nodes), d_end = random.vectors(nodes);
+    std::vector<double> d_internal(internal.size());
+    for (double& d : d_internal) d = random.number(0.1);
+    for (double& of : of_next) of = random.number();
+    const auto changed = [&](double by, bool with_end) {
+      Motion m = motion;
+      for (std::size_t n = 0; n < nodes; ++n) {
+        m.previous_positions[n] += by * d_previous[n];
+        if (!m.earlier_positions.empty()) m.earlier_positions[n] += by * d_earlier[n];
+        if (with_end) m.positions[n] += by * d_end[n];
+      }
+      for (std::size_t i = 0; i < internal.size(); ++i) m.internal[i] += by * d_internal[i];
+      return m;
+    };
+    const auto difference = [](const auto& value) {
+      return (value(difference_um) - value(-difference_um)) / (2 * difference_um);
+    };
+    const auto along_change = [&] {
+      double sum = flat(previous).dot(flat(d_previous)) + flat(positions).dot(flat(d_end));
+      if (motion.ahead > 0) sum += flat(earlier).dot(flat(d_earlier));
+      for (std::size_t i = 0; i < internal.size(); ++i) sum += by_internal[i] * d_internal[i];
+      return sum;
+    };
+
+    const double scale = std::max(1e-3, largest(forces_of(law, motion.step())));
+    derivatives.add_force_gradient(motion.step(), adjoint, cleared());
+    EXPECT_NEAR(along_change(), difference([&](double by) { return along(law, changed(by, false)); }),
+                tolerance * scale)
+        << law.name() << ", seed " << seed;
+    const BeginningGradient gradient = cleared();
+    derivatives.add_internal_gradient(motion.step(), law.next_internal(motion.step()), of_next, positions, gradient);
+    const auto next = [&](double by) {
+      const Motion m = changed(by, true);
+      const std::vector<double> numbers = law.next_internal(m.step());
+      return std::inner_product(numbers.begin(), numbers.end(), of_next.begin(), 0.0);
+    };
+    EXPECT_NEAR(along_change(), difference(next), tolerance) << law.name() << ", seed " << seed;
+
+    const std::size_t cells = tissue.cells.size();
+    const std::vector<double> ones(cells, 1.0);
+    if (!law.derivatives().with_strengths(ones)) continue;
+    std::vector<double> of_cells(cells, 0.0);
+    derivatives.add_strength_gradient(motion.step(), adjoint, of_cells);
+    for (std::size_t c = 0; c < cells; ++c) {
+      const auto with_factor = [&](double by) {
+        std::vector<double> factors = ones;
+        factors[c] += by;
+        return along(*with_strengths(law, factors), motion);
+      };
+      EXPECT_NEAR(of_cells[c], difference(with_factor), tolerance * scale) << law.name() << ", cell " << c;
+    }
+  }
 }
 
 void check_semidefinite_tangent(const Law& law, const Tissue& tissue, double size_um, bool exact_is_indefinite,

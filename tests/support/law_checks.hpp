@@ -30,6 +30,11 @@ void expect_assembled_is_matrix_free(const Law& law, const Motion& motion, unsig
 /// All of them, at random large deformations and rotations; `size_um` is how far nodes move.
 void check_derivatives(const Law& law, const Tissue& tissue, double size_um, int cases = 3, double tolerance = 1e-6);
 
+/// Derivatives of forces and of the internal state by what a step begins with, and by strengths of cells if it has any,
+/// at random large motions of second order; `internal`: the state at its beginning.
+void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um, const std::vector<double>& internal,
+                           double tolerance = 1e-7);
+
 /// The semidefinite tangent at random large deformations: both forms of it are one, it is symmetric, no direction has
 /// negative stiffness, and forces do not change. `exact_is_indefinite`: whether some of these motions need it.
 void check_semidefinite_tangent(const Law& law, const Tissue& tissue, double size_um, bool exact_is_indefinite,

@@ -128,6 +128,7 @@ struct Contraction::Pulled {
   std::span<const NodeId> nodes;
   std::span<const Segment> segments;  // between them: where dl/dx and d2l/dx2 come from
   double energy = 0, tension = 0, slope = 0;
+  double active_tension = 0;  // without the damper
   // The tension resists rotation of segments. A spring under pressure (a negative preload) is unstable
   // there, and the semidefinite tangent leaves that out.
   double turning_tension = 0;
@@ -137,7 +138,7 @@ struct Contraction::Pulled {
     for (const Segment& segment : segments) length += segment.length;
     const double stretch = std::max(0.0, length - spring.rest_length);
     energy = activity * (0.5 * spring.stiffness * stretch * stretch + spring.preload * length);
-    tension = activity * (spring.stiffness * stretch + spring.preload);
+    tension = active_tension = activity * (spring.stiffness * stretch + spring.preload);
     slope = length > spring.rest_length ? activity * spring.stiffness : 0;
     if (spring.damping > 0) {
       const double change = length - step.before([this](std::span<const Vec3> x) { return chain_length(nodes, x); });
@@ -155,6 +156,12 @@ struct Contraction::Pulled {
     if (i > 0) gradient += segments[i - 1].direction;
     if (i < segments.size()) gradient -= segments[i].direction;
     return gradient;
+  }
+  // dl along a direction of all nodes.
+  [[nodiscard]] double lengthening(std::span<const Vec3> direction) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) sum += length_gradient(i).dot(direction[nodes[i].index()]);
+    return sum;
   }
 };
 
@@ -215,9 +222,7 @@ void Contraction::add_forces(const Step& step, std::span<Vec3> forces) const {
 void Contraction::add_tangent_product(const Step& step, std::span<const Vec3> direction,
                                       std::span<Vec3> product) const {
   for_springs(step, [&](const Pulled& p) {
-    double lengthening = 0;
-    for (std::size_t i = 0; i < p.nodes.size(); ++i)
-      lengthening += p.length_gradient(i).dot(direction[p.nodes[i].index()]);
+    const double lengthening = p.lengthening(direction);
     for (std::size_t i = 0; i < p.nodes.size(); ++i)
       product[p.nodes[i].index()] += p.slope * lengthening * p.length_gradient(i);
     for (std::size_t s = 0; s < p.segments.size(); ++s) {
@@ -242,6 +247,51 @@ void Contraction::add_tangent(const Step& step, TangentSink& tangent) const {
       tangent.add_block(a, b, -block);
     }
   });
+}
+
+namespace {
+
+// Add `factor` times the gradient of the length of a chain.
+void add_length_gradient(std::span<const NodeId> nodes, std::span<const Vec3> x, double factor,
+                         std::span<Vec3> gradient) {
+  for (std::size_t s = 1; s < nodes.size(); ++s) {
+    const std::size_t a = nodes[s - 1].index(), b = nodes[s].index();
+    const Vec3 pull = factor * (x[b] - x[a]).stableNormalized();
+    gradient[a] -= pull;
+    gradient[b] += pull;
+  }
+}
+
+}  // namespace
+
+// Forces are -T dl/dx, so adjoint . forces is -T times the lengthening of the spring along the adjoint.
+void Contraction::add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                                     const BeginningGradient& gradient) const {
+  std::size_t k = 0;
+  for_springs(step, [&](const Pulled& p) {
+    const double damping = springs_[k++].damping;
+    if (damping == 0) return;
+    const double of_before = damping / step.rate_s * p.lengthening(adjoint);
+    add_length_gradient(p.nodes, step.previous_positions, (1 + step.ahead) * of_before, gradient.previous);
+    if (step.ahead > 0) add_length_gradient(p.nodes, step.earlier_positions, -step.ahead * of_before, gradient.earlier);
+  });
+}
+
+void Contraction::add_strength_gradient(const Step& step, std::span<const Vec3> adjoint,
+                                        std::span<double> of_cells) const {
+  std::size_t k = 0;
+  for_springs(step, [&](const Pulled& p) {
+    of_cells[springs_[k++].cell.index()] -= p.active_tension * p.lengthening(adjoint);
+  });
+}
+
+std::unique_ptr<Law> Contraction::with_strengths(std::span<const double> factors) const {
+  std::vector<Spring> springs = springs_;
+  for (Spring& spring : springs)
+    for (double* strength : {&spring.stiffness, &spring.preload}) *strength *= factors[spring.cell.index()];
+  CellPattern pattern = pattern_;
+  for (std::size_t c = 0; c < pattern.strengths.size(); ++c) pattern.strengths[c] *= factors[c];
+  return std::make_unique<Contraction>(std::move(springs), program_, std::move(pattern));
 }
 
 namespace {

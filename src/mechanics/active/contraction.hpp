@@ -5,6 +5,7 @@
 
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/active/program.hpp"
+#include "mechanics/derivatives.hpp"
 #include "mechanics/law.hpp"
 #include "tissue/tissue.hpp"
 
@@ -47,7 +48,7 @@ struct ContractionRule {
 std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern& pattern, const ContractionRule& rule);
 
 /// Contraction law. Its semidefinite tangent omits the rotation of springs under compression.
-class Contraction final : public Law {
+class Contraction final : public Law, public LawDerivatives {
  public:
   /// Take ownership of the springs. `pattern` serves pulses, ablations and activity_of; springs carry their own
   /// delays.
@@ -61,6 +62,13 @@ class Contraction final : public Law {
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> /*internal*/) const override { return groups_; }
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
+  void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                          const BeginningGradient& gradient) const override;
+  void add_strength_gradient(const Step& step, std::span<const Vec3> adjoint,
+                             std::span<double> of_cells) const override;
+  /// Dampers have no strengths.
+  [[nodiscard]] std::unique_ptr<Law> with_strengths(std::span<const double> factors) const override;
   /// Split each cut edge into two springs in series, with k scaled to keep the tension; edges of the new facet have
   /// none. Diagonals stay whole.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,

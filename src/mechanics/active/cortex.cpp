@@ -342,6 +342,14 @@ void Cortex::take_stretches(std::vector<double> stretches) {
   take_rest_areas();
 }
 
+std::unique_ptr<Law> Cortex::with_strengths(std::span<const double> factors) const {
+  auto law = std::make_unique<Cortex>(*this);
+  for (std::size_t c = 0; c < factors.size(); ++c) law->pattern_.strengths[c] *= factors[c];
+  for (std::size_t f = 0; f < faces_.size(); ++f) law->strengths_[f] = strength_of(faces_[f], law->pattern_);
+  law->kept_ = {};
+  return law;
+}
+
 std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const TissueChange& change,
                                             std::span<const Vec3> positions) const {
   auto after = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_, kernels_);

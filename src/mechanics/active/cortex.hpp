@@ -11,6 +11,7 @@
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/active/shape_activation.hpp"
+#include "mechanics/derivatives.hpp"
 #include "mechanics/kernels/batch_law.hpp"
 #include "tissue/faces.hpp"
 
@@ -33,7 +34,7 @@ struct CortexRule {
 /// Cortex law. Cell strengths scale all terms. A lateral face is shared by two cells and takes the mean of their
 /// parameters (0 for an inactive cell); at a boundary it takes those of its one cell; on a mirror plane or at the end
 /// of a slice, half of them. The semidefinite tangent omits faces under compression and changes of shape within a face.
-class Cortex final : public BatchLaw<Cortex, 4> {
+class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
  public:
   Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kernels kernels = chosen_kernels());
 
@@ -71,6 +72,16 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
                                                  double time_s) const override;
 
+  /// NoGradient where cells start by their shape.
+  [[nodiscard]] const LawDerivatives& derivatives() const override;
+  void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                          const BeginningGradient& gradient) const override;
+  void add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
+                             std::span<Vec3> positions, const BeginningGradient& gradient) const override;
+  void add_strength_gradient(const Step& step, std::span<const Vec3> adjoint,
+                             std::span<double> of_cells) const override;
+  [[nodiscard]] std::unique_ptr<Law> with_strengths(std::span<const double> factors) const override;
+
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
   /// Areas (um^2) and tensions (nN/um) of the faces at the end of a step.
@@ -99,6 +110,9 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   };
   [[nodiscard]] FaceTensions face_tensions(const Step& step) const;
   [[nodiscard]] FaceArrays kernel_arrays(const Step& step) const;
+  /// Return the increase of the area of each face along a direction of nodes.
+  [[nodiscard]] std::vector<double> area_increases(std::span<const Vec3> positions,
+                                                   std::span<const Vec3> direction) const;
   [[nodiscard]] bool flows() const { return rule_.relaxation_s > 0; }
   [[nodiscard]] double rest_area_before(std::size_t face, const Step& step) const;
   class Origins;  // faces before a division that faces after it come from

@@ -92,6 +92,7 @@ class Dilatation final : public BatchLaw<Dilatation, 8> {
   [[nodiscard]] std::string_view name() const override { return "dilatation"; }
   [[nodiscard]] double energy(const Step& step) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
   [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;

@@ -93,6 +93,7 @@ class ElasticVolume final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override {
     if (!step.semidefinite_tangent) volume_.add_tangent(step.positions, std::array{pressure(step.positions)}, tangent);
   }
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }
   [[nodiscard]] NodeGroups node_groups(std::span<const double> /*internal*/) const override {
     return volume_.parts().nodes;
   }
@@ -104,6 +105,7 @@ class ElasticVolume final : public Law {
     return std::make_unique<ElasticVolume>(tissue, is_part ? 0 : bulk_modulus_, volume_.targets()[0]);
   }
 
+  [[nodiscard]] const EnclosedVolume& volume() const { return volume_; }
   /// Return V/V_0.
   [[nodiscard]] double volume_ratio(std::span<const Vec3> positions) const {
     return volume_.volume(positions) / volume_.targets()[0];

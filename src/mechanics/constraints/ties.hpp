@@ -54,6 +54,7 @@ class Ties final : public Law {
       tangent.add_block(nodes[1], nodes[0], -block);
     }
   }
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }
   [[nodiscard]] NodeGroups node_groups(std::span<const double> /*internal*/) const override {
     NodeGroups groups;
     for (const Tie& tie : ties_) groups.add(tie.nodes);

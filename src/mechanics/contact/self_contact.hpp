@@ -21,6 +21,7 @@
 #include "core/box_grid.hpp"
 #include "mechanics/contact/contact_pair.hpp"
 #include "mechanics/contact/edge_pairs.hpp"
+#include "mechanics/derivatives.hpp"
 #include "mechanics/law.hpp"
 #include "tissue/mirror.hpp"
 #include "tissue/tissue.hpp"
@@ -38,7 +39,7 @@ struct SelfContactRule {
 
 /// Self-contact law. The pairs of a step are its internal state, detected again when a step is accepted. Pairs that may
 /// touch join their nodes, so the sparsity pattern changes from step to step.
-class SelfContact final : public Law {
+class SelfContact final : public Law, public LawDerivatives {
  public:
   /// Make the law for a tissue, or for one side of it. Points, facets and pairs number nodes as in the full tissue;
   /// positions, forces and blocks are those of the side.
@@ -72,6 +73,14 @@ class SelfContact final : public Law {
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                             const TissueChange& change,
                                                             const ChangePositions& positions) const override;
+
+  /// Pairs keep their features. NoGradient with friction.
+  [[nodiscard]] const LawDerivatives& derivatives() const override;
+  void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                          const BeginningGradient& gradient) const override;
+  void add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
+                             std::span<Vec3> positions, const BeginningGradient& gradient) const override;
+  [[nodiscard]] bool internal_has_parameters() const override { return false; }
 
   using Pair = ContactPair;
   /// Contact point: a node, an edge midpoint or a facet mean.

@@ -26,6 +26,7 @@ class CornerBarrier final : public Law {
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
 

@@ -31,6 +31,11 @@ class Corotational final : public BatchLaw<Corotational, 8> {
                                                     std::span<const Vec3> positions) const override;
 
   [[nodiscard]] bool overbends() const override { return true; }
+  [[nodiscard]] const LawDerivatives& derivatives() const override {
+    if (shear_viscosity_ > 0)
+      refuse_gradient("viscosity has no derivatives yet; set dynamics.shear_viscosity_Pa_s = 0");
+    return static_derivatives();
+  }
 
   [[nodiscard]] CorotationalArrays kernel_arrays(const Step& step) const;
 

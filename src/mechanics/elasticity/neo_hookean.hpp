@@ -30,6 +30,11 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8> {
   [[nodiscard]] double energy(const Step& step) const override;
   [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
 
+  [[nodiscard]] const LawDerivatives& derivatives() const override {
+    if (flows_) refuse_gradient("relaxing rest shapes have no derivatives yet; remove elasticity.relaxation_min");
+    return static_derivatives();
+  }
+
   /// Return, if cells relax, C_p at the beginning of this step, then of the previous step, in the layout of kernels.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;

@@ -41,6 +41,12 @@ class ShapeMemory final : public TurningElements {
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
 
+  [[nodiscard]] const LawDerivatives& derivatives() const override {
+    if (shear_viscosity_ > 0)
+      refuse_gradient("viscosity has no derivatives yet; set dynamics.shear_viscosity_Pa_s = 0");
+    return static_derivatives();
+  }
+
   /// Return k of each element, nN/um.
   [[nodiscard]] const std::vector<double>& stiffness() const { return stiffness_; }
 

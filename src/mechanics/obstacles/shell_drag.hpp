@@ -10,7 +10,7 @@
 
 namespace plica {
 
-class ShellDrag final : public NodeLaw<ShellDrag> {
+class ShellDrag final : public NodeLaw<ShellDrag>, public LawDerivatives {
  public:
   static constexpr double film_um = 0.1;
 
@@ -18,6 +18,9 @@ class ShellDrag final : public NodeLaw<ShellDrag> {
   ShellDrag(const Tissue& tissue, const OuterShape& shell, double drag);
 
   [[nodiscard]] std::string_view name() const override { return "shell-drag"; }
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
+  void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                          const BeginningGradient& gradient) const override;
 
  private:
   friend NodeLaw;

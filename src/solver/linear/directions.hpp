@@ -24,6 +24,7 @@ class NewtonDirections {
   struct ForcingTermInput {
     double residual_reduction;  // residual after / before the last direction; 0 before the first
     double relative_tolerance;  // of the linear system: the one that would end the step
+    bool is_exact = false;      // whether to reach it, as outside of Newton's method
   };
   enum class Status { found, singular, interrupted };
   [[nodiscard]] virtual Status find(const Step& step, const Iterate& at, const Residual& residual,

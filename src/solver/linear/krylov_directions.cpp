@@ -32,6 +32,7 @@ double share_of_forces(const KrylovVector& right, std::size_t nodes) {
 /// thousands of times those of forces (up to a factor of a thousand, their weights leave forces accurate enough).
 /// Forces have to be solved as well: a direction that mends constraints alone may raise the residual at every length.
 double tolerance_of_whole(const Residual& residual, NewtonDirections::ForcingTermInput forcing, double share) {
+  if (forcing.is_exact) return forcing.relative_tolerance;
   constexpr double least_share = 1e-3, part_unsolved = 0.3;
   if (share < least_share) forcing.relative_tolerance *= share / least_share;
   return std::min(useful_tolerance(residual, forcing), part_unsolved * std::max(share, least_share));

@@ -82,8 +82,17 @@ class LinearisedSystem {
   [[nodiscard]] std::span<const double> units() const { return units_; }
 
   void multiply(const Step& step, const Iterate& at, const KrylovVector& direction, KrylovVector& product) const {
-    const std::span<const Vec3> dx = of_nodes(direction);
     const std::span<Vec3> forces = of_nodes(product);
+    multiply_unprojected(step, at, direction, forces);
+    project(forces);
+    const std::span<double> rates = of_rows(product);
+    jacobian_.rates(of_nodes(direction), rates);
+    parallel_for(rates.size(), [&](std::size_t row) { rates[row] *= -units_[row]; });
+  }
+  /// Set forces to A dx - J^T dmultipliers, along fixed directions as well.
+  void multiply_unprojected(const Step& step, const Iterate& at, const KrylovVector& direction,
+                            std::span<Vec3> forces) const {
+    const std::span<const Vec3> dx = of_nodes(direction);
     parallel_for(forces.size(), [&](std::size_t n) { forces[n].setZero(); });
     for_laws(model_, step,
              [&](const Law& law, const Step& law_step) { law.add_tangent_product(law_step, dx, forces); });
@@ -95,10 +104,6 @@ class LinearisedSystem {
     model_.tissue.carry_hanging(forces);
     for (const auto& [node, tangent] : obstacle_tangents_) forces[node] += tangent * dx[node];
     jacobian_.add_forces(of_rows(direction), -1, forces);
-    project(forces);
-    const std::span<double> rates = of_rows(product);
-    jacobian_.rates(dx, rates);
-    parallel_for(rates.size(), [&](std::size_t row) { rates[row] *= -units_[row]; });
   }
   [[nodiscard]] KrylovVector right_side(const Residual& residual) const {
     KrylovVector right(size());

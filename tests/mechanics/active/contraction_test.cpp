@@ -40,6 +40,13 @@ TEST(Contraction, DerivativesAgreeWithFiniteDifferencesWithEverythingOn) {
                     tissue, 3);
 }
 
+TEST(Contraction, DerivativesOfARunAgreeWithFiniteDifferences) {
+  const Tissue tissue = distorted_block(two_cells, 1, 2);
+  const ContractionRule rule{
+      .stiffness = 7.3, .across_ratio = 0.4, .diagonals = true, .rest_length_ratio = 0.6, .preload = 5, .damping = 2};
+  check_law_derivatives(law_of(tissue, rule, Program({0, 2}, {0, 1})), tissue, 3, {});
+}
+
 // Chains: edges into which cuts have put nodes.
 TEST(Contraction, DerivativesAgreeWithFiniteDifferencesOnChains) {
   const Tissue tissue = distorted_block(refined, 1, 3);

@@ -43,6 +43,18 @@ TEST(Cortex, DerivativesAgreeWithFiniteDifferences) {
   check_derivatives(Cortex(tissue, all_cells(tissue), {.side = CellSide::apical, .tension = 1}), tissue, 2);
 }
 
+TEST(Cortex, DerivativesOfARunAgreeWithFiniteDifferences) {
+  const Tissue tissue =
+      distorted_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}}, 2, 3);
+  for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
+    const Cortex law(tissue, all_cells(tissue), whole_rule(side));
+    std::vector<double> internal = law.first_internal(tissue);
+    Random random(4);
+    for (double& ratio : internal) ratio += random.number(0.2);
+    check_law_derivatives(law, tissue, 2, internal);
+  }
+}
+
 // A law keeps the tensions of its last iterate; no other iterate sees them.
 TEST(Cortex, WhatItKeepsIsOfTheSameIterate) {
   const Tissue tissue =

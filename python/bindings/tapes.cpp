@@ -1,0 +1,134 @@
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include <memory>
+#include <set>
+
+#include "arrays.hpp"
+#include "core/errors.hpp"
+#include "errors.hpp"
+#include "simulation.hpp"
+#include "simulation/tape.hpp"
+#include "thread_count.hpp"
+
+namespace plica::python {
+namespace {
+
+using NodeVectors = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+
+Vectors vectors_of(const NodeVectors& numbers) {
+  Vectors vectors;
+  for (std::size_t n = 0; n < numbers.shape(0); ++n) vectors.emplace_back(numbers(n, 0), numbers(n, 1), numbers(n, 2));
+  return vectors;
+}
+
+/// Call work(stop) without the GIL. A signal or failure is raised afterwards.
+template <class Work>
+auto computed(int threads, const Work& work) {
+  Signals signals;
+  decltype(work(std::function<bool()>())) result;
+  try {
+    const nb::gil_scoped_release free;
+    const SafeThreadCount count(threads);
+    result = work(std::function<bool()>([&] { return signals.have_come(); }));
+  } catch (const RecordingFailed& failed) {
+    throw GaveUp{failed.what(), failed.cell, failed.time_s};
+  }
+  signals.rethrow();
+  return result;
+}
+
+/// Tape with its number of threads; handles Ctrl-C.
+class TapeOf {
+ public:
+  TapeOf(Tape tape, int threads) : tape_(std::move(tape)), threads_(threads) {}
+
+  static std::unique_ptr<TapeOf> record(const CheckedScenario& scenario, int threads, std::vector<double> at_s,
+                                        double until_s, const StrengthFactors& strengths) {
+    return computed(threads, [&](const auto& stop) {
+      return std::make_unique<TapeOf>(Tape(scenario.scenario, {std::move(at_s), until_s, strengths, stop}), threads);
+    });
+  }
+  [[nodiscard]] std::unique_ptr<TapeOf> replayed(const CheckedScenario& scenario,
+                                                 const StrengthFactors& strengths) const {
+    return computed(threads_, [&](const auto&) {
+      return std::make_unique<TapeOf>(tape_.replayed(scenario.scenario, strengths), threads_);
+    });
+  }
+  [[nodiscard]] std::shared_ptr<ModelPair> parameter(const std::string& name, const CheckedScenario& more,
+                                                     const CheckedScenario& less, double difference) const {
+    return computed(threads_, [&](const auto&) {
+      return std::make_shared<ModelPair>(tape_.parameter(name, more.scenario, less.scenario, difference));
+    });
+  }
+  [[nodiscard]] nb::tuple gradient(const std::map<std::size_t, NodeVectors>& outcome,
+                                   const std::vector<std::shared_ptr<ModelPair>>& parameters, const std::string& law,
+                                   double tolerance) const {
+    OutcomeGradient by_positions;
+    for (const auto& [state, gradient] : outcome) by_positions[state] = vectors_of(gradient);
+    RunGradient gradient = computed(threads_, [&](const auto& stop) {
+      Tape::Wanted wanted{{}, law, tolerance, stop};
+      for (const auto& parameter : parameters) wanted.parameters.push_back(parameter.get());
+      return tape_.gradient(by_positions, wanted).value_or(RunGradient());
+    });
+    return nb::make_tuple(array_of(std::move(gradient.by_parameter)), array_of(std::move(gradient.by_strength)));
+  }
+
+  [[nodiscard]] const Tape& tape() const { return tape_; }
+
+ private:
+  Tape tape_;
+  int threads_;
+};
+
+}  // namespace
+
+void bind_tapes(nb::module_& module) {
+  nb::class_<ModelPair>(module, "Parameter");
+  nb::class_<TapeOf>(module, "Tape")
+      .def_static("record", &TapeOf::record, nb::arg("scenario"), nb::arg("threads"), nb::arg("at_s"),
+                  nb::arg("until_s"), nb::arg("strengths"))
+      .def("replayed", &TapeOf::replayed, nb::arg("scenario"), nb::arg("strengths"))
+      .def("parameter", &TapeOf::parameter, nb::arg("name"), nb::arg("more"), nb::arg("less"), nb::arg("difference"))
+      .def("gradient", &TapeOf::gradient, nb::arg("outcome"), nb::arg("parameters"), nb::arg("law"),
+           nb::arg("tolerance"))
+      .def(
+          "state_at", [](const TapeOf& self, double time_s) { return self.tape().state_at(time_s); }, nb::arg("time_s"))
+      .def(
+          "positions",
+          [](const TapeOf& self, std::size_t state) {
+            return array_of(std::span<const Vec3>(self.tape().positions(state)));
+          },
+          nb::arg("state"))
+      .def(
+          "outcome",
+          [](const TapeOf& self, const std::string& name, std::size_t state) {
+            const SmoothOutcome outcome = self.tape().outcome(name, state);
+            return nb::make_tuple(outcome.value, array_of(std::span<const Vec3>(outcome.gradient)));
+          },
+          nb::arg("name"), nb::arg("state"))
+      .def(
+          "surface_nodes",
+          [](const TapeOf& self, const std::string& side) {
+            if (side != "apical" && side != "basal")
+              throw UsageError("surface: \"" + side + "\"; give \"apical\", \"basal\" or \"all\"");
+            std::set<int> nodes;
+            for (const Facet& facet : self.tape().tissue().facets(side == "basal" ? CellSide::basal : CellSide::apical))
+              for (const NodeId node : facet.nodes) nodes.insert(node.number());
+            return array_of(std::vector<int>(nodes.begin(), nodes.end()));
+          },
+          nb::arg("side"))
+      .def_prop_ro("cell_count", [](const TapeOf& self) { return self.tape().tissue().cells.size(); })
+      .def_prop_ro("times_s", [](const TapeOf& self) {
+        std::vector<double> times_s;
+        for (const TapedState& state : self.tape().run().states) times_s.push_back(state.time_s);
+        return array_of(std::move(times_s));
+      });
+}
+
+}  // namespace plica::python

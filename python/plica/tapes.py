@@ -1,0 +1,348 @@
+"""Recorded runs, and gradients of their outcomes with respect to keys of the scenario and strengths of cells."""
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .arguments import mapping_of, number, number_from, numbers, per_cell, text_of, texts_of, told, whole
+from .errors import ScenarioError
+from .scenario import Scenario
+
+__all__ = ["GradientCheck", "Tape", "check_gradient", "record"]
+
+Array = NDArray[np.float64]
+Loss = Callable[[Array], tuple[float, ArrayLike]]
+KEY_CHANGE = 1e-4  # of a key on each side, relative
+
+
+def record(
+    scenario: Union[Scenario, str, os.PathLike[str], Mapping[str, Any]],
+    *,
+    until_min: Optional[float] = None,
+    at_min: Union[float, Iterable[float]] = (),
+    strengths: Optional[Mapping[str, ArrayLike]] = None,
+    threads: int = 1,
+) -> Tape:
+    """Run a scenario and record it for gradients.
+
+    Parameters
+    ----------
+    scenario : Scenario, str, path or mapping
+        The scenario or its source (see `Scenario`).
+    until_min : float, optional
+        End of the run, minutes; by default that of the scenario.
+    at_min : float or iterable of float
+        Times at which outcomes are wanted, minutes. Steps end on them.
+    strengths : mapping of str to array_like of float, shape (cells,), optional
+        Factors, 0 or more, on the strengths of cells in contractions and cortices (``"cortex.apical"``).
+    threads : int
+        Threads per step.
+
+    Returns
+    -------
+    Tape
+
+    Raises
+    ------
+    ValueError
+        If a law of the scenario has no derivatives (viscosity, relaxing interiors, triggers), or cells divide. The message
+        names it.
+    NumericsError
+        If no step converges.
+
+    Examples
+    --------
+    >>> import plica
+    >>> tape = plica.record("drosophila", until_min=1)
+    >>> slope = tape.gradient("furrow_depth_um", of="contraction.apical.stiffness_nN_per_um")
+    >>> slope > 0
+    True
+    """
+    own = scenario.copy() if isinstance(scenario, Scenario) else Scenario(scenario)
+    times_s = sorted({60 * time for time in _times(at_min)})
+    until_s = math.inf if until_min is None else 60 * number_from(until_min, 0, "until_min", "a number above 0", above=True)
+    factors = _factors(own, {} if strengths is None else strengths)
+    core = _core.Tape.record(own._ready, whole(threads, "threads", 1, 1024), times_s, until_s, factors)
+    return Tape(own, core, factors)
+
+
+class Tape:
+    """Recorded run. Made by `record`.
+
+    Gradients are exact for the recorded steps: their number, ends and orders do not change.
+    """
+
+    def __init__(self, scenario: Scenario, core: _core.Tape, strengths: dict[str, list[float]]) -> None:
+        self._scenario, self._core, self._strengths = scenario, core, strengths
+        self._parameters: dict[str, _core.Parameter] = {}
+
+    @property
+    def scenario(self) -> Scenario:
+        """Copy of the scenario."""
+        return self._scenario.copy()
+
+    @property
+    def times_min(self) -> Array:
+        """Start of the run and ends of all steps, minutes."""
+        return self._core.times_s / 60
+
+    def positions(self, at_min: Optional[float] = None) -> Array:
+        """Return node positions at the end of a step, µm; shape (nodes, 3).
+
+        Parameters
+        ----------
+        at_min : float, optional
+            Time, minutes; by default the end of the run.
+        """
+        return self._core.positions(self._states(at_min)[0])
+
+    def distance_to(self, target: ArrayLike, *, surface: str = "apical") -> Loss:
+        """Return the mean squared distance of a surface from a target, µm², as an outcome for `gradient`.
+
+        Parameters
+        ----------
+        target : array_like of float, shape (nodes, 3)
+            Positions of all nodes, µm; those of other nodes are not read. With several times, shape (times, nodes, 3).
+        surface : {"apical", "basal", "all"}
+            Nodes that are compared.
+        """
+        nodes = np.arange(len(self.positions())) if surface == "all" else self._core.surface_nodes(text_of(surface, "surface"))
+        wanted = numbers(target, "target", "positions of all nodes")[..., nodes, :]
+
+        def distance(positions: Array) -> tuple[float, Array]:
+            apart = positions[..., nodes, :] - wanted
+            gradient = np.zeros_like(positions)
+            count = apart.size / 3
+            gradient[..., nodes, :] = 2 * apart / count
+            return float((apart**2).sum() / count), gradient
+
+        return distance
+
+    def value(self, outcome: Union[str, Loss], *, at_min: Union[None, float, Iterable[float]] = None) -> float:
+        """Return the value of an outcome.
+
+        Parameters
+        ----------
+        outcome : str or callable
+            As for `gradient`.
+        at_min : float or iterable of float, optional
+            As for `gradient`.
+        """
+        return self._evaluate(outcome, at_min)[0]
+
+    def gradient(
+        self,
+        outcome: Union[str, Loss, ArrayLike],
+        *,
+        of: Union[str, Iterable[str]],
+        by: Optional[str] = None,
+        at_min: Union[None, float, Iterable[float]] = None,
+        tolerance: float = 1e-9,
+    ) -> Any:
+        """Return the gradient of an outcome.
+
+        Parameters
+        ----------
+        outcome : str, callable or array_like of float
+            Output variable: ``"furrow_depth_um"``, ``"vml_apical_area_ratio"``, ``"enclosed_volume_ratio"``, or the column of a
+            monitor of areas, volumes, positions or displacements. Or a function of positions, of shape (nodes, 3), that returns its
+            value and its gradient, of the same shape; or the gradient alone. With several times, positions and gradient have shape
+            (times, nodes, 3).
+        of : str or iterable of str
+            Key of the scenario with a number (``"cortex.apical.tension_mN_per_m"``), or several. With ``by="cell"``, one contraction
+            or cortex (``"cortex.apical"``).
+        by : "cell", optional
+            For the derivative by a factor on the strength of each cell, 1 for the scenario's.
+        at_min : float or iterable of float, optional
+            Time of the outcome, minutes; several: outcome of several times. By default the end of the run.
+        tolerance : float
+            Relative tolerance of linear solves.
+
+        Returns
+        -------
+        float or ndarray
+            A number for one key; an array for several, in their order, or for cells, in the order of ``Simulation.cell_data``.
+
+        Raises
+        ------
+        ValueError
+            If a key cannot be varied, changes the tissue or which laws act, or if contact forces act.
+
+        Notes
+        -----
+        The cost is about that of the run, for any number of cells, and two evaluations of forces per key and step.
+        """
+        if not isinstance(of, str):
+            of = texts_of(of, "of")
+        if by not in (None, "cell"):
+            raise ValueError(f'by: {told(by)}; give "cell", or omit it for keys of the scenario')
+        if by == "cell" and not isinstance(of, str):
+            raise ValueError(f"of: {told(of)}; give one contraction or cortex with by=\"cell\"")
+        accuracy = number_from(tolerance, 0, "tolerance", "a number above 0", above=True)
+        by_positions = self._evaluate(outcome, at_min)[1]
+        keys = [] if by == "cell" else [of] if isinstance(of, str) else of
+        parameters = [self._parameter(key) for key in keys]
+        by_key, by_cell = self._core.gradient(by_positions, parameters, text_of(of, "of") if by == "cell" else "", accuracy)
+        if by == "cell":
+            return by_cell
+        return float(by_key[0]) if isinstance(of, str) else by_key
+
+    def _states(self, at_min: Union[None, float, Iterable[float]]) -> list[int]:
+        if at_min is None:
+            return [len(self._core.times_s) - 1]
+        return [self._core.state_at(60 * time) for time in _times(at_min)]
+
+    def _evaluate(self, outcome: Any, at_min: Union[None, float, Iterable[float]]) -> tuple[float, dict[int, Array]]:
+        """Return the value of an outcome (NaN for a gradient alone) and its gradient by positions of each state."""
+        states = self._states(at_min)
+        of_one = at_min is None or not isinstance(at_min, Iterable)
+        if isinstance(outcome, str):
+            if len(states) != 1:
+                raise ValueError(f"at_min: {told(at_min)}; give one time for outcome {told(outcome)}")
+            of_state, by_positions = self._core.outcome(text_of(outcome, "outcome"), states[0])
+            return of_state, {states[0]: by_positions}
+        stack = np.stack([self._core.positions(state) for state in states])
+        positions = stack[0] if of_one else stack
+        value = math.nan
+        if callable(outcome):
+            result = outcome(positions)
+            if not isinstance(result, tuple) or len(result) != 2:
+                raise ValueError(f"outcome: the function returned {told(result)}; return its value and its gradient")
+            value, outcome = number(result[0], "outcome", "a finite number as its value"), result[1]
+        gradient = numbers(outcome, "outcome", f"a gradient of shape {positions.shape}")
+        if gradient.shape != positions.shape:
+            raise ValueError(f"outcome: {told(gradient)}; give a gradient of shape {positions.shape}")
+        if not np.isfinite(gradient).all():
+            raise ValueError("outcome: its gradient has values that are not finite")
+        by_state: dict[int, Array] = {}
+        for state, part in zip(states, gradient[None] if of_one else gradient):
+            by_state[state] = np.ascontiguousarray(by_state.get(state, 0) + part)
+        return value, by_state
+
+    def _changed(self, key: str, part: float) -> Scenario:
+        """Return the scenario with a key changed by this part of its value."""
+        value = self._scenario[key]
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise ValueError(f"{key}: {told(value)}; choose a key that has a number")
+        if value == 0:
+            raise ValueError(f"{key}: is 0, where its change has no scale; set a small value above 0 for a gradient there")
+        changed = self._scenario.copy()
+        try:
+            changed[key] = value * (1 + part)
+        except ScenarioError as error:
+            raise ValueError(f"{key}: cannot be varied about {value}; choose a key with a range of numbers ({error})") from error
+        return changed
+
+    def _parameter(self, key: str) -> _core.Parameter:
+        if key not in self._parameters:
+            more, less = self._changed(key, KEY_CHANGE), self._changed(key, -KEY_CHANGE)
+            difference = 2 * KEY_CHANGE * float(self._scenario[key])
+            self._parameters[key] = self._core.parameter(key, more._ready, less._ready, difference)
+        return self._parameters[key]
+
+    def __repr__(self) -> str:
+        return f"Tape({self._scenario.name!r}, {len(self._core.times_s) - 1} steps to {self.times_min[-1]:.4g} min)"
+
+
+@dataclass(frozen=True)
+class GradientCheck:
+    """Derivative compared with a central difference over the same steps.
+
+    Attributes
+    ----------
+    of : str
+        Key, or direction in the strengths of cells.
+    gradient, difference : float
+        The derivative, and the central difference.
+    error : float
+        Their relative difference.
+    """
+
+    of: str
+    gradient: float
+    difference: float
+
+    @property
+    def error(self) -> float:
+        return abs(self.gradient - self.difference) / max(abs(self.difference), np.finfo(float).tiny)
+
+    def __repr__(self) -> str:
+        return f"GradientCheck({self.of}: {self.gradient:.9g}, difference {self.difference:.9g}, error {self.error:.1e})"
+
+
+def check_gradient(
+    tape: Tape,
+    outcome: Union[str, Loss],
+    *,
+    of: Union[str, Iterable[str]],
+    by: Optional[str] = None,
+    at_min: Union[None, float, Iterable[float]] = None,
+    change: float = 1e-4,
+) -> list[GradientCheck]:
+    """Compare a gradient with central differences of runs through the same steps.
+
+    Parameters
+    ----------
+    tape : Tape
+        Recorded run.
+    outcome : str or callable
+        As for `Tape.gradient`.
+    of, by, at_min
+        As for `Tape.gradient`.
+    change : float
+        Relative change of keys, and change of factors on strengths, on each side.
+
+    Returns
+    -------
+    list of GradientCheck
+        One per key. For cells: a random direction, and the cell with the largest derivative.
+
+    Raises
+    ------
+    RuntimeError
+        If a step of a changed run does not converge.
+
+    Notes
+    -----
+    It takes two runs per comparison and one more, with tight tolerances.
+    """
+    part = number_from(change, 0, "change", "a number above 0", above=True)
+    base = Tape(tape._scenario, tape._core.replayed(tape._scenario._ready, tape._strengths), tape._strengths)
+    slopes = np.atleast_1d(base.gradient(outcome, of=of, by=by, at_min=at_min, tolerance=1e-11))
+
+    def value(scenario: Scenario, strengths: dict[str, list[float]]) -> float:
+        return Tape(scenario, tape._core.replayed(scenario._ready, strengths), strengths).value(outcome, at_min=at_min)
+
+    if by is None:
+        found = []
+        for key, slope in zip([of] if isinstance(of, str) else texts_of(of, "of"), slopes):
+            values = [value(base._changed(key, sign * part), tape._strengths) for sign in (1, -1)]
+            found.append(GradientCheck(key, float(slope), (values[0] - values[1]) / (2 * part * float(base._scenario[key]))))
+        return found
+    law = text_of(of, "of")
+    at = np.array(tape._strengths.get(law, np.ones(len(slopes))))
+    largest = int(np.argmax(np.abs(slopes)))
+    directions = {"a random direction": np.random.default_rng(0).uniform(0, 1, len(slopes)), f"cell {largest}": np.eye(len(slopes))[largest]}
+    found = []
+    for name, direction in directions.items():
+        values = [value(base._scenario, {**tape._strengths, law: (at + sign * part * direction).tolist()}) for sign in (1, -1)]
+        found.append(GradientCheck(f"{law}, {name}", float(direction @ slopes), (values[0] - values[1]) / (2 * part)))
+    return found
+
+
+def _times(at_min: Union[float, Iterable[float]]) -> list[float]:
+    given = list(at_min) if isinstance(at_min, Iterable) and not isinstance(at_min, str) else [at_min]
+    return [number_from(time, 0, "at_min", "a time in minutes, or several") for time in given]
+
+
+def _factors(scenario: Scenario, strengths: Mapping[str, ArrayLike]) -> dict[str, list[float]]:
+    given = mapping_of(strengths, "strengths", "a mapping of laws to one number per cell")
+    cells = scenario._cell_count() if given else 0
+    return {law: per_cell(values, cells, f"strengths[{law}]").tolist() for law, values in given.items()}

@@ -1,0 +1,63 @@
+// Derivatives of laws for gradients of runs (docs/theory/gradients.md), as transposed products.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/errors.hpp"
+#include "mechanics/law.hpp"
+
+namespace plica {
+
+/// A run, a law or a key that has no gradient; the message names it, and the remedy.
+class NoGradient : public UsageError {
+ public:
+  using UsageError::UsageError;
+};
+
+/// Gradient of an outcome with respect to what a step begins with, as one law sees it.
+struct BeginningGradient {
+  double ahead;                // Step::ahead
+  std::span<Vec3> previous;    // by positions at the beginning of the step; nodes
+  std::span<Vec3> earlier;     // by positions at the beginning of the step before; nodes, where ahead > 0
+  std::span<double> internal;  // by the internal state of the law
+
+  /// Add the gradient by the extrapolated position of a node (Step::before).
+  void add_before(std::size_t node, const Vec3& gradient) const {
+    previous[node] += (1 + ahead) * gradient;
+    if (ahead > 0) earlier[node] -= ahead * gradient;
+  }
+};
+
+/// Derivatives of a law. The defaults are those of forces that depend on positions at the end of a step and on time
+/// only, and of an internal state that no force reads.
+class LawDerivatives {
+ public:
+  virtual ~LawDerivatives() = default;
+
+  /// Add the gradient of adjoint . forces with respect to what the step begins with.
+  virtual void add_force_gradient(const Step& /*step*/, std::span<const Vec3> /*adjoint*/,
+                                  const BeginningGradient& /*gradient*/) const {}
+
+  /// Add the gradient of adjoint . next, next being next_internal(step), with respect to positions at the end of the
+  /// step and to what it begins with.
+  virtual void add_internal_gradient(const Step& /*step*/, std::span<const double> /*next*/,
+                                     std::span<const double> /*adjoint*/, std::span<Vec3> /*positions*/,
+                                     const BeginningGradient& /*gradient*/) const {}
+  /// Whether next_internal depends on parameters of the law, beside positions.
+  [[nodiscard]] virtual bool internal_has_parameters() const { return true; }
+
+  /// Add the derivatives of adjoint . forces by a factor on the strength of each cell, to which forces are
+  /// proportional, for laws with strengths.
+  virtual void add_strength_gradient(const Step& /*step*/, std::span<const Vec3> /*adjoint*/,
+                                     std::span<double> /*of_cells*/) const {}
+
+  /// Return the law with the strengths of its cells times these factors; null for laws without strengths.
+  [[nodiscard]] virtual std::unique_ptr<Law> with_strengths(std::span<const double> /*factors*/) const { return {}; }
+};
+/// Return a law with the strengths of its cells times these factors. UsageError if it has none.
+std::unique_ptr<Law> with_strengths(const Law& law, std::span<const double> factors);
+
+}  // namespace plica

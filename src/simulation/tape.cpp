@@ -1,0 +1,155 @@
+#include "simulation/tape.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/clock.hpp"
+#include "core/errors.hpp"
+
+namespace plica {
+namespace {
+
+/// Scale the strengths of cells in the laws of both models. Returns the laws as they were.
+std::map<std::size_t, std::shared_ptr<const Law>> scale_strengths(Simulation::Parts& parts,
+                                                                  const StrengthFactors& strengths) {
+  std::map<std::size_t, std::shared_ptr<const Law>> unscaled;
+  for (const auto& [label, factors] : strengths) {
+    const std::size_t law = place_of_law(*parts.model, label);
+    const std::size_t cells = (parts.full_model ? parts.full_model->model() : *parts.model).tissue.cells.size();
+    if (factors.size() != cells)
+      throw UsageError(fmt::format("{}: {} strengths for {} cells; give one per cell", label, factors.size(), cells));
+    for (std::size_t c = 0; c < cells; ++c)
+      if (!(factors[c] >= 0 && std::isfinite(factors[c])))
+        throw UsageError(fmt::format("{}: the strength of cell {} is {}; give a number >= 0", label, c, factors[c]));
+    std::unique_ptr<Law>& own = parts.model->laws[law];
+    const std::vector<double> of_side = parts.full_model ? parts.full_model->scale_strengths(law, factors) : factors;
+    std::unique_ptr<Law> scaled = with_strengths(*own, of_side);
+    unscaled[law] = std::exchange(own, std::move(scaled));
+  }
+  return unscaled;
+}
+
+void require_constant_model(const Simulation& simulation, const Model* first) {
+  if (simulation.divisions() > 0 || &simulation.solved_model() != first)
+    throw NoGradient(
+        fmt::format("at t = {:g} s cells divide or grow, through which there are no gradients yet; end "
+                    "the run before, or remove it from the scenario",
+                    simulation.time_s()));
+}
+
+RunMethod method_of(const RunControls& controls) {
+  if (controls.scheme.forces != StepScheme::Forces::newton || controls.scheme.projection)
+    throw NoGradient(
+        "time.scheme: only Newton's steps with exact volumes have gradients; remove time.scheme and "
+        "volume.method");
+  return {controls.scheme.linear_method, controls.scheme.order};
+}
+
+}  // namespace
+
+Tape::Tape(const Scenario& scenario, const RecordingInput& input)
+    : scenario_(std::make_shared<const Scenario>(scenario)), strengths_(input.strengths) {
+  Simulation::Parts parts = parts_of(scenario);
+  unscaled_ = scale_strengths(parts, strengths_);
+  method_ = method_of(parts.controls);
+  require_derivatives(*parts.model);
+  if (parts.full_model) mirror_ = parts.full_model->mirror();
+  measure_plan_ = std::make_shared<const MeasurePlan>(parts.measure_plan);
+  Simulation simulation(std::move(parts));
+  simulation.stop_when(input.stop_requested);
+  const Model* model = &simulation.solved_model();
+  whole_ = std::make_shared<const Model>(simulation.model());
+  solved_ = mirror_.is_used() ? std::make_shared<const Model>(*model) : whole_;
+
+  run_.states.push_back(TapedState::of(simulation.solved_state()));
+  const auto run_to = [&](double time_s) {
+    State before = simulation.solved_state();
+    while (simulation.step(time_s)) {
+      require_constant_model(simulation, model);
+      run_.rates.push_back(rates_of(before, simulation.solved_state()));
+      run_.states.push_back(TapedState::of(simulation.solved_state()));
+      before = simulation.solved_state();
+    }
+    if (simulation.status() == RunStatus::failed) throw RecordingFailed(simulation);
+    was_stopped_ = input.stop_requested && input.stop_requested();
+  };
+  for (const double time_s : input.at_s) {
+    if (was_stopped_) return;
+    run_to(time_s);
+    if (!was_stopped_ && !is_same_instant(simulation.time_s(), time_s))
+      throw UsageError(fmt::format("the run ends at {:g} min, before {:g} min; set a later end, or an earlier time",
+                                   simulation.time_s() / 60, time_s / 60));
+  }
+  if (!was_stopped_) run_to(input.until_s);
+}
+
+Vectors Tape::positions(std::size_t state) const {
+  const Vectors& of_side = run_.states.at(state).positions;
+  return mirror_.is_used() ? mirror_.full_vectors(of_side) : of_side;
+}
+
+std::size_t Tape::state_at(double time_s) const {
+  for (std::size_t n = 0; n < run_.states.size(); ++n)
+    if (is_same_instant(run_.states[n].time_s, time_s)) return n;
+  throw UsageError(fmt::format("no step ends at {:g} min; record the run with this time in at_min", time_s / 60));
+}
+
+std::unique_ptr<Model> Tape::solved_model(const Scenario& scenario) const {
+  Simulation::Parts parts = parts_of(scenario);
+  scale_strengths(parts, strengths_);
+  return std::move(parts.model);
+}
+
+ModelPair Tape::parameter(std::string name, const Scenario& more, const Scenario& less, double difference) const {
+  return model_pair(*solved_, std::move(name), solved_model(more), solved_model(less), difference);
+}
+
+std::optional<RunGradient> Tape::gradient(const OutcomeGradient& outcome, const Wanted& wanted) const {
+  GradientInput input{
+      .parameters = wanted.parameters, .tolerance = wanted.tolerance, .stop_requested = wanted.stop_requested};
+  if (!wanted.law.empty()) {
+    input.law = place_of_law(*solved_, wanted.law);
+    const auto unscaled = unscaled_.find(*input.law);
+    if (unscaled != unscaled_.end()) input.unscaled_law = unscaled->second.get();
+  }
+  OutcomeGradient of_side;
+  for (const auto& [state, of_whole] : outcome) {
+    if (!mirror_.is_used()) {
+      of_side[state] = of_whole;
+      continue;
+    }
+    Vectors& sum = of_side[state] = Vectors(solved_->tissue.node_count(), Vec3::Zero());
+    for (std::size_t n = 0; n < of_whole.size(); ++n) {
+      const auto [node, signs] = mirror_.image(NodeId(n));
+      sum[node.index()] += signs.cwiseProduct(of_whole[n]);
+    }
+  }
+  std::optional<RunGradient> gradient = way_back(*solved_, run_, method_.linear_method, of_side, input);
+  if (gradient && input.law && mirror_.is_used()) {
+    const std::vector<double> by_side = std::move(gradient->by_strength);
+    const double copies = static_cast<double>(mirror_.cells.size()) / static_cast<double>(by_side.size());
+    gradient->by_strength.clear();
+    for (const CellId cell : mirror_.cells) gradient->by_strength.push_back(by_side[cell.index()] / copies);
+  }
+  return gradient;
+}
+
+Tape Tape::replayed(const Scenario& scenario, const StrengthFactors& strengths) const {
+  Tape other;
+  other.scenario_ = std::make_shared<const Scenario>(scenario);
+  other.strengths_ = strengths;
+  Simulation::Parts parts = parts_of(scenario);
+  other.unscaled_ = scale_strengths(parts, strengths);
+  other.mirror_ = mirror_;
+  other.measure_plan_ = measure_plan_;
+  other.method_ = method_;
+  other.solved_ = std::move(parts.model);
+  other.whole_ = mirror_.is_used() ? std::make_shared<const Model>(parts.full_model->model()) : other.solved_;
+  other.run_ = plica::replayed(*other.solved_, run_, method_);
+  return other;
+}
+
+}  // namespace plica

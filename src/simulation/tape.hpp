@@ -1,0 +1,96 @@
+// Tape: a run that was recorded for gradients of its outcomes (docs/theory/gradients.md).
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "measure/smooth_outcome.hpp"
+#include "scenario/scenario.hpp"
+#include "simulation/simulation.hpp"
+#include "solver/sensitivity/way_back.hpp"
+#include "tissue/mirror.hpp"
+
+namespace plica {
+
+/// Solver failure of a recorded run.
+struct RecordingFailed : std::runtime_error {
+  RecordingFailed(const Simulation& simulation)
+      : std::runtime_error(simulation.failure()), cell(simulation.failed_cell()), time_s(simulation.time_s()) {}
+  std::optional<int> cell;
+  double time_s;
+};
+
+/// Factors on the strengths of cells by law identifier; one per cell of the whole embryo.
+using StrengthFactors = std::map<std::string, std::vector<double>>;
+
+struct RecordingInput {
+  std::vector<double> at_s = {};  // times on which steps end, ascending; then the run continues to its end
+  double until_s = std::numeric_limits<double>::infinity();
+  StrengthFactors strengths = {};
+  std::function<bool()> stop_requested = {};
+};
+
+/// Recorded run, and gradients of functions of its positions. Positions and cells are those of the whole embryo, also
+/// if one side is solved. Gradients are exact for the recorded steps: their ends and orders are constants.
+class Tape {
+ public:
+  /// Run the scenario and record it. Throws as Simulation does; NoGradient if a law has no derivatives or cells divide;
+  /// RecordingFailed.
+  Tape(const Scenario& scenario, const RecordingInput& input);
+
+  [[nodiscard]] const Tissue& tissue() const { return whole_->tissue; }
+  [[nodiscard]] const TapedRun& run() const { return run_; }
+  /// Whether recording was stopped before the end.
+  [[nodiscard]] bool was_stopped() const { return was_stopped_; }
+  /// Return positions after a number of steps, um.
+  [[nodiscard]] Vectors positions(std::size_t state) const;
+  /// Return the number of the state at a time. UsageError if no step ends then.
+  [[nodiscard]] std::size_t state_at(double time_s) const;
+
+  /// Return an output variable after a number of steps, and its gradient by positions (smooth_outcome).
+  [[nodiscard]] SmoothOutcome outcome(const std::string& name, std::size_t state) const {
+    return smooth_outcome(name, *whole_, *measure_plan_, positions(state));
+  }
+
+  /// Return the key as a parameter, from the scenario with a larger and a smaller value of it. NoGradient as
+  /// model_pair.
+  [[nodiscard]] ModelPair parameter(std::string name, const Scenario& more, const Scenario& less,
+                                    double difference) const;
+
+  struct Wanted {
+    std::vector<const ModelPair*> parameters = {};
+    std::string law = {};  // of which the strengths of cells are parameters; empty: none
+    double tolerance = 1e-9;
+    std::function<bool()> stop_requested = {};
+  };
+  /// Return the gradient of an outcome, given by its gradients by positions. If one side is solved, mirror images
+  /// share the derivative by their common strength equally. Empty if stopped.
+  [[nodiscard]] std::optional<RunGradient> gradient(const OutcomeGradient& outcome, const Wanted& wanted) const;
+
+  /// Repeat the same steps with tight tolerances, for another scenario or other strengths: an oracle of gradients.
+  [[nodiscard]] Tape replayed(const Scenario& scenario, const StrengthFactors& strengths) const;
+  [[nodiscard]] const Scenario& scenario() const { return *scenario_; }
+  [[nodiscard]] const StrengthFactors& strengths() const { return strengths_; }
+
+ private:
+  Tape() = default;
+  [[nodiscard]] std::unique_ptr<Model> solved_model(const Scenario& scenario) const;
+
+  std::shared_ptr<const Scenario> scenario_;
+  std::shared_ptr<const Model> whole_, solved_;
+  std::shared_ptr<const MeasurePlan> measure_plan_;
+  std::map<std::size_t, std::shared_ptr<const Law>> unscaled_;  // laws with other strengths than the scenario's
+  Mirror mirror_;                                               // of the whole embryo to the solved side
+  StrengthFactors strengths_;
+  RunMethod method_;
+  TapedRun run_;
+  bool was_stopped_ = false;
+};
+
+}  // namespace plica

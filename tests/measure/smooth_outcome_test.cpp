@@ -1,0 +1,82 @@
+#include "measure/smooth_outcome.hpp"
+
+#include "core/errors.hpp"
+#include "core/parallel.hpp"
+#include "simulation/simulation.hpp"
+#include "support/scenarios.hpp"
+#include "support/tissues.hpp"
+
+namespace {
+
+// Positions that no symmetry favours.
+Vectors moved_at_random(const Tissue& tissue, unsigned seed) {
+  Vectors positions = tissue.rest_positions;
+  Random random(seed);
+  for (Vec3& x : positions) x += random.vector(1);
+  tissue.place_hanging_positions(positions);
+  return positions;
+}
+
+TEST(SmoothOutcome, GradientsAgreeWithDifferences) {
+  const std::string monitors = R"([monitor.area]
+quantity = "area"
+over = "sum"
+face = "basal"
+[monitor.ratio]
+quantity = "area_ratio"
+over = "rms"
+region = "furrow"
+[monitor.volume]
+quantity = "volume"
+over = "rms"
+[monitor.moved]
+quantity = "displacement"
+[monitor.side]
+quantity = "position"
+axis = "y"
+face = "apical"
+over = "rms"
+[enclosed.yolk]
+)";
+  ScenarioSource source = find_scenario("drosophila");
+  source.text += monitors;
+  const Simulation::Parts parts = parts_of(load_scenario(source, {"vitelline.gap_um=0.5"}));
+  const Tissue& tissue = parts.model->tissue;
+  int cases = 0;
+  for (const char* name : {"furrow_depth_um", "vml_apical_area_ratio", "enclosed_volume_ratio", "area.area_um2",
+                           "ratio.area_ratio", "volume.volume_um3", "moved.displacement_um", "side.position_um"}) {
+    const Vectors positions = moved_at_random(tissue, 3);
+    const SmoothOutcome outcome = smooth_outcome(name, *parts.model, parts.measure_plan, positions);
+    const Vectors direction = Random(4).vectors(tissue.node_count());
+    const auto value_at = [&](double way) {
+      Vectors there = positions;
+      for (std::size_t n = 0; n < there.size(); ++n) there[n] += way * direction[n];
+      return smooth_outcome(name, *parts.model, parts.measure_plan, there).value;
+    };
+    const double d = 1e-5, difference = (value_at(d) - value_at(-d)) / (2 * d);
+    EXPECT_NEAR(parallel_dot(outcome.gradient, direction), difference, 1e-6 * std::abs(difference)) << name;
+    ++cases;
+  }
+  EXPECT_EQ(cases, 8);
+  // Values are those of series.csv.
+  State state = rest_state(*parts.model);
+  state.positions = moved_at_random(tissue, 5);
+  const Observation row = Observer(*parts.model, parts.measure_plan).observe({*parts.model, state}, nullptr);
+  for (const char* name : {"furrow_depth_um", "vml_apical_area_ratio", "enclosed_volume_ratio"})
+    EXPECT_DOUBLE_EQ(smooth_outcome(name, *parts.model, parts.measure_plan, state.positions).value, row[name].value())
+        << name;
+}
+
+TEST(SmoothOutcome, OthersAreNamed) {
+  const Simulation::Parts parts = parts_of(load_scenario(pulled_block()));
+  try {
+    (void)smooth_outcome("end.position_um", *parts.model, parts.measure_plan, parts.model->tissue.rest_positions);
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(),
+                 "outcome \"end.position_um\": has no gradient here; those that have: all.volume_um3; add a monitor of "
+                 "area, area_ratio, volume, position or displacement over mean, sum or rms, or give a function");
+  }
+}
+
+}  // namespace

@@ -1,0 +1,159 @@
+"""Recorded runs: gradients agree with differences, and recover what made a shape."""
+import numpy as np
+import plica
+import pytest
+from scipy.optimize import minimize
+
+BLOCK = """
+format = 1
+[embryo]
+shape = "block"
+length_um = 60
+width_um = 40
+cell_height_um = 20
+cells = [3, 2, 1]
+[elasticity]
+young_modulus_Pa = 1000
+[cortex.apical]
+region = "all"
+tension_mN_per_m = 2
+saturation_ratio = 0.2
+[time]
+end_s = 60
+[stop]
+at_equilibrium = false
+[monitor.top]
+quantity = "area"
+over = "sum"
+[monitor.ratio]
+quantity = "area_ratio"
+over = "rms"
+[monitor.moved]
+quantity = "displacement"
+[monitor.side]
+quantity = "position"
+axis = "x"
+face = "apical"
+over = "rms"
+[monitor.smallest]
+quantity = "area"
+over = "min"
+"""
+OUTCOMES = ["top.area_um2", "ratio.area_ratio", "moved.displacement_um", "side.position_um"]
+
+
+@pytest.fixture(scope="module")
+def tape():
+    return plica.record(BLOCK, at_min=0.5)
+
+
+def test_a_tape_is_the_run(tape):
+    sim = plica.Simulation(BLOCK)
+    sim.run(until_min=0.5)
+    assert np.array_equal(tape.positions(0.5), sim.positions)
+    sim.run()
+    assert np.array_equal(tape.positions(), sim.positions)
+    assert tape.times_min[0] == 0 and tape.times_min[-1] == 1
+    assert tape.value("top.area_um2") == pytest.approx(sim.measures["top.area_um2"], rel=1e-12)
+    assert "steps to 1 min" in repr(tape)
+
+
+@pytest.mark.parametrize("outcome", OUTCOMES)
+def test_gradients_of_monitors_agree_with_differences(tape, outcome):
+    keys = ["cortex.apical.tension_mN_per_m", "elasticity.young_modulus_Pa", "dynamics.surface_drag_Pa_s_per_um"]
+    for check in plica.check_gradient(tape, outcome, of=keys) + plica.check_gradient(tape, outcome, of="cortex.apical", by="cell"):
+        assert check.error < 1e-6, check
+
+
+def test_outcomes_of_the_furrow_agree_with_differences():
+    tape = plica.record("drosophila", until_min=0.5)
+    for outcome in ["furrow_depth_um", "vml_apical_area_ratio"]:
+        [check] = plica.check_gradient(tape, outcome, of="contraction.apical.stiffness_nN_per_um")
+        assert check.error < 1e-6, check
+
+
+def test_a_function_of_several_times(tape):
+    first, last = tape.positions(0.5), tape.positions(1)
+    loss = tape.distance_to(np.stack([first + 0.1, last - 0.2]), surface="all")
+    assert tape.value(loss, at_min=[0.5, 1]) == pytest.approx((3 * 0.01 + 3 * 0.04) / 2)
+    for check in plica.check_gradient(tape, loss, of="cortex.apical", by="cell", at_min=[0.5, 1]):
+        assert check.error < 1e-6, check
+    # A gradient alone, of one time.
+    by_array = tape.gradient(np.ones((len(last), 3)), of="elasticity.young_modulus_Pa")
+    by_function = tape.gradient(lambda x: (x.sum(), np.ones_like(x)), of="elasticity.young_modulus_Pa")
+    assert by_array == by_function
+
+
+def test_one_way_back_gives_all_keys(tape):
+    keys = ["cortex.apical.tension_mN_per_m", "elasticity.young_modulus_Pa"]
+    both = tape.gradient("top.area_um2", of=keys)
+    assert both.shape == (2,) and both[0] < 0 < both[1]
+    assert both[1] == pytest.approx(tape.gradient("top.area_um2", of=keys[1]), rel=1e-9)
+
+
+def test_tensions_are_recovered_from_a_shape():
+    truth = np.array([1.3, 0.7, 1.1, 0.8, 1.2, 0.9])
+    shape = plica.record(BLOCK, strengths={"cortex.apical": truth}).positions()
+
+    def misfit(logs):
+        factors = np.exp(logs)
+        tape = plica.record(BLOCK, strengths={"cortex.apical": factors})
+        loss = tape.distance_to(shape)
+        return 1e4 * tape.value(loss), 1e4 * factors * tape.gradient(loss, of="cortex.apical", by="cell")
+
+    found = minimize(misfit, np.zeros(6), jac=True, method="L-BFGS-B", options={"maxiter": 30})
+    assert np.abs(np.exp(found.x) - truth).max() < 0.01
+
+
+WRONG = [
+    (dict(outcome="smallest.area_um2", of="elasticity.young_modulus_Pa"), "has no gradient here; those that have: moved.displacement_um, ratio.area_ratio, side.position_um, top.area_um2;"),
+    (dict(outcome="top.area_um2", of="embryo.length_um"), "embryo.length_um: has no gradient, since it changes the tissue"),
+    (dict(outcome="top.area_um2", of="cortex.apical.region"), 'cortex.apical.region: \'all\'; choose a key that has a number'),
+    (dict(outcome="top.area_um2", of="cortex.apical.stiffness_mN_per_m"), "is 0, where its change has no scale"),
+    (dict(outcome="top.area_um2", of="cortex.apica", by="cell"), 'no law "cortex.apica"; laws: '),
+    (dict(outcome="top.area_um2", of="drag", by="cell"), "drag: has no strengths of cells; choose a contraction or a cortex"),
+    (dict(outcome="top.area_um2", of=["cortex.apical"], by="cell"), "give one contraction or cortex"),
+    (dict(outcome="top.area_um2", of="cortex.apical", by="face"), 'by: \'face\'; give "cell"'),
+    (dict(outcome="top.area_um2", of="elasticity.young_modulus_Pa", at_min=0.7), "no step ends at 0.7 min"),
+    (dict(outcome=np.ones((3, 3)), of="elasticity.young_modulus_Pa"), "give a gradient of shape"),
+    (dict(outcome=lambda x: x, of="elasticity.young_modulus_Pa"), "return its value and its gradient"),
+]
+
+
+@pytest.mark.parametrize("arguments, message", WRONG)
+def test_bad_arguments_are_told(tape, arguments, message):
+    arguments = dict(arguments)
+    with pytest.raises(ValueError) as raised:
+        tape.gradient(arguments.pop("outcome"), **arguments)
+    assert message in str(raised.value)
+
+
+REFUSED = [
+    ({"dynamics.shear_viscosity_Pa_s": 10}, "elasticity: viscosity has no derivatives yet"),
+    ({"elasticity.model": "neo-hookean", "elasticity.relaxation_min": 5}, "relaxing rest shapes have no derivatives yet"),
+    ({"cortex.apical.trigger": {"measure": "apical_area_ratio", "below": 0.9}}, "cortex.apical: shape-dependent activity"),
+    ({"dynamics.density_kg_per_m3": 1000, "time.integrator": "backward-euler"}, "inertia: this law has no derivatives yet"),
+    ({"time.scheme": "linearly-implicit", "volume.method": "projection"}, "only Newton's steps"),
+]
+
+
+@pytest.mark.parametrize("changes, message", REFUSED)
+def test_what_has_no_derivatives_refuses_by_name(changes, message):
+    scenario = plica.Scenario(BLOCK)
+    scenario.update(changes)
+    with pytest.raises(ValueError) as raised:
+        plica.record(scenario)
+    assert message in str(raised.value)
+
+
+def test_strengths_are_checked():
+    with pytest.raises(ValueError, match="one number per cell"):
+        plica.record(BLOCK, strengths={"cortex.apical": [1, 2]})
+    with pytest.raises(ValueError, match="the strength of cell 1 is -1"):
+        plica.record(BLOCK, strengths={"cortex.apical": [1, -1, 1, 1, 1, 1]})
+
+
+def test_threads_give_the_same_bits(tape):
+    other = plica.record(BLOCK, at_min=0.5, threads=3)
+    one, three = (t.gradient("top.area_um2", of="cortex.apical", by="cell") for t in (tape, other))
+    assert np.array_equal(one, three)

@@ -1,0 +1,240 @@
+// Gradients of whole runs agree with central differences over the same steps.
+#include "simulation/tape.hpp"
+
+#include "core/threads.hpp"
+#include "support/scenarios.hpp"
+#include "support/tissues.hpp"
+
+namespace {
+
+struct Key {
+  std::string name;
+  double value;
+};
+
+// An outcome of all positions at one time: J = sum w.x + |x - X|^2/200, with random w and X at rest.
+struct RandomOutcome {
+  Vectors weights;
+  const Tissue& tissue;
+  double of(const Vectors& x, Vectors* gradient = nullptr) const {
+    double sum = 0;
+    if (gradient != nullptr) *gradient = weights;
+    for (std::size_t n = 0; n < x.size(); ++n) {
+      const Vec3 moved = x[n] - tissue.rest_positions[n];
+      sum += weights[n].dot(moved) + moved.squaredNorm() / 200;
+      if (gradient != nullptr) (*gradient)[n] += moved / 100;
+    }
+    return sum;
+  }
+};
+
+struct Case {
+  ScenarioSource source;
+  std::vector<std::string> overrides;
+  std::vector<Key> keys;
+  std::string law;  // with a field of strengths
+  double until_s;
+  std::vector<double> at_s = {};  // further times that the outcome looks at
+  double tolerance = 1e-7;
+};
+
+// Compares with differences at several h, of which the best counts: larger ones have their own error, smaller ones the
+// solver's.
+void expect_gradient(const Case& c, int most_of_sweep = 3) {
+  const Scenario scenario = load_scenario(c.source, c.overrides);
+  const Tape recorded(scenario, {.at_s = c.at_s, .until_s = c.until_s});
+  const Tape tape = recorded.replayed(scenario, {});
+  ASSERT_GE(tape.run().steps(), 3u);
+  std::vector<std::size_t> states = {tape.run().steps()};
+  for (const double time_s : c.at_s) states.push_back(tape.state_at(time_s));
+
+  Random random(7);
+  const RandomOutcome outcome{random.vectors(tape.tissue().node_count()), tape.tissue()};
+  OutcomeGradient by_positions;
+  for (const std::size_t state : states) outcome.of(tape.positions(state), &by_positions[state]);
+  const auto value = [&](const Tape& of) {
+    double sum = 0;
+    for (const std::size_t state : states) sum += outcome.of(of.positions(state));
+    return sum;
+  };
+
+  const auto with = [&](const Key& key, double by) {
+    std::vector<std::string> overrides = c.overrides;
+    overrides.push_back(fmt::format("{}={:.17g}", key.name, key.value * (1 + by)));
+    return load_scenario(c.source, overrides);
+  };
+  std::vector<ModelPair> pairs;
+  for (const Key& key : c.keys)
+    pairs.push_back(tape.parameter(key.name, with(key, 1e-4), with(key, -1e-4), 2e-4 * key.value));
+  Tape::Wanted wanted{.law = c.law, .tolerance = 1e-11};
+  for (const ModelPair& pair : pairs) wanted.parameters.push_back(&pair);
+  const auto gradient = tape.gradient(by_positions, wanted);
+  ASSERT_TRUE(gradient);
+
+  // Small derivatives drown in the rounding of the outcome.
+  double floor = 0;
+  for (std::size_t k = 0; k < c.keys.size(); ++k)
+    floor = std::max(floor, 0.03 * std::abs(gradient->by_parameter[k] * c.keys[k].value));
+
+  const auto expect_as_differences = [&](const std::string& name, double by_way_back, const auto& changed) {
+    double best = std::numeric_limits<double>::infinity();
+    std::string all;
+    double h = 1e-3;
+    for (int k = 0; k < most_of_sweep && best > c.tolerance / 10; ++k, h /= 10) {
+      const double difference = (value(changed(h)) - value(changed(-h))) / (2 * h);
+      const double error = std::abs(by_way_back - difference) / (std::abs(difference) + floor);
+      all += fmt::format(" h {:.0e}: {:.2e}", h, error);
+      best = std::min(best, error);
+    }
+    EXPECT_LE(best, c.tolerance) << name << ": " << by_way_back << all;
+    fmt::print("{:44} {: .6e}{}\n", name, by_way_back, all);
+  };
+  for (std::size_t k = 0; k < c.keys.size(); ++k)
+    expect_as_differences(c.keys[k].name, gradient->by_parameter[k] * c.keys[k].value,
+                          [&](double h) { return tape.replayed(with(c.keys[k], h), {}); });
+  if (c.law.empty()) return;
+  // The field: along a random direction, and for the cell with the largest derivative.
+  const std::vector<double>& by_strength = gradient->by_strength;
+  ASSERT_EQ(by_strength.size(), tape.tissue().cells.size());
+  std::vector<double> direction(by_strength.size());
+  for (double& d : direction) d = random.number();
+  const auto along = [&] { return std::inner_product(direction.begin(), direction.end(), by_strength.begin(), 0.0); };
+  const auto scaled = [&](double h) {
+    std::vector<double> factors(direction.size());
+    for (std::size_t i = 0; i < factors.size(); ++i) factors[i] = 1 + h * direction[i];
+    return tape.replayed(scenario, {{c.law, factors}});
+  };
+  if (!c.overrides.empty() && c.overrides.back().find("mirror") != std::string::npos)
+    direction.assign(direction.size(), 1);
+  expect_as_differences("all cells", along(), scaled);
+  if (direction.front() == direction.back()) return;
+  const auto size = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  const auto largest = std::ranges::max_element(by_strength, size) - by_strength.begin();
+  std::ranges::fill(direction, 0);
+  direction[static_cast<std::size_t>(largest)] = 1;
+  expect_as_differences("one cell", along(), scaled);
+}
+
+const std::vector<Key> keys_of_drosophila = {{"elasticity.young_modulus_Pa", 1000},
+                                             {"dynamics.surface_drag_Pa_s_per_um", 131},
+                                             {"contraction.apical.stiffness_nN_per_um", 4.82},
+                                             {"contraction.apical.preload_nN", 60}};
+
+TEST(Tape, GradientsOfABlockAgreeWithDifferences) {
+  expect_gradient({pulled_block(),
+                   {"contraction.all.damping_nN_s_per_um=2"},
+                   {{"contraction.all.stiffness_nN_per_um", 1}, {"contraction.all.damping_nN_s_per_um", 2}},
+                   "contraction.all",
+                   3});
+}
+
+TEST(Tape, GradientsOfAnEmbryoInItsShellAgreeWithDifferences) {
+  expect_gradient({find_scenario("drosophila"),
+                   {"time.integrator=\"bdf2\"", "vitelline.gap_um=0.5"},
+                   keys_of_drosophila,
+                   "contraction.apical",
+                   60});
+}
+
+TEST(Tape, GradientsOfBackwardEulerAgreeWithDifferences) {
+  expect_gradient({find_scenario("drosophila"),
+                   {"time.integrator=\"backward-euler\"", "time.step_s=15", "vitelline.enabled=false"},
+                   keys_of_drosophila,
+                   "contraction.apical",
+                   60,
+                   {30}});
+}
+
+const std::vector<Key> keys_of_slice = {{"cortex.apical.tension_mN_per_m", 1.4},
+                                        {"cortex.apical.saturation_ratio", 0.16},
+                                        {"cortex.floor.stiffness_mN_per_m", 0.7},
+                                        {"cortex.walls.compression_ratio", 0.1},
+                                        {"cortex.walls.relaxation_min", 6},
+                                        {"cortex.surface.crowding_mN_per_m", 0.01},
+                                        {"enclosed.yolk.bulk_modulus_Pa", 50000},
+                                        {"elasticity.young_modulus_Pa", 5},
+                                        {"elasticity.corner_barrier_Pa", 10},
+                                        {"dynamics.surface_drag_Pa_s_per_um", 38},
+                                        {"vitelline.gap_um", 0.5}};
+
+// With compliant yolk, flowing cortices, a shell that nodes touch, and pairs that may touch.
+TEST(Tape, GradientsOfAFurrowBeforeContactAgreeWithDifferences) {
+  expect_gradient(
+      {find_scenario("furrow-slice"), {"embryo.mirror=[\"y\"]"}, keys_of_slice, "cortex.apical", 240, {}, 1e-6});
+}
+
+// Polygons, whose walls have nodes that hang on edges, and rest areas of walls that flow.
+TEST(Tape, GradientsOfPolygonsAgreeWithDifferences) {
+  expect_gradient({{"egg", "egg.toml", egg + R"(
+[elasticity]
+model = "neo-hookean"
+young_modulus_Pa = 100
+[vitelline]
+drag_Pa_s_per_um = 50
+gap_um = 0.05
+[enclosed.yolk]
+[region.belly]
+angle_deg = [-40, 40]
+[cortex.apical]
+region = "belly"
+tension_mN_per_m = 1
+[cortex.walls]
+region = "all"
+faces = "lateral"
+stiffness_mN_per_m = 0.1
+relaxation_min = 1
+[time]
+end_s = 15
+[stop]
+at_equilibrium = false
+)"},
+                   {},
+                   {{"cortex.apical.tension_mN_per_m", 1},
+                    {"vitelline.drag_Pa_s_per_um", 50},
+                    {"elasticity.young_modulus_Pa", 100}},
+                   "cortex.walls",
+                   15});
+}
+
+TEST(Tape, RefusesWhatHasNoDerivativesByName) {
+  const auto refused = [](const std::vector<std::string>& overrides) {
+    try {
+      const ScenarioSource block = pulled_block();
+      (void)Tape(load_scenario(block, overrides), {.until_s = 2});
+    } catch (const NoGradient& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused({}), "");
+  EXPECT_EQ(refused({"dynamics.shear_viscosity_Pa_s=3"}),
+            "elasticity: viscosity has no derivatives yet; set dynamics.shear_viscosity_Pa_s = 0");
+  EXPECT_EQ(refused({"dynamics.density_kg_per_m3=1000", "time.integrator=\"backward-euler\""}),
+            "inertia: this law has no derivatives yet; remove it from the scenario");
+  EXPECT_NE(refused({"division.one.region=\"all\"", "division.one.at_s=1"}).find("cells divide or grow"),
+            std::string::npos);
+  const Scenario scenario = load_scenario(pulled_block());
+  const Tape tape(scenario, {.until_s = 1});
+  EXPECT_THROW(
+      (void)tape.parameter("embryo.length_um", load_scenario(pulled_block(), {"embryo.length_um=61"}), scenario, 1),
+      NoGradient);
+  EXPECT_THROW((void)tape.gradient({{1, Vectors(tape.tissue().node_count(), Vec3::Zero())}}, {.law = "drag"}),
+               UsageError);
+  EXPECT_THROW((void)tape.state_at(0.7), UsageError);
+}
+
+TEST(Tape, IsBitwiseTheRunForAnyThreads) {
+  const Scenario scenario = load_scenario(find_scenario("drosophila"), {"time.end_s=20"});
+  const auto gradient_with = [&](int threads) {
+    const ThreadCount count(threads);
+    const Tape tape(scenario, {});
+    Simulation simulation(scenario);
+    simulation.run();
+    EXPECT_EQ(tape.positions(tape.run().steps()), simulation.state().positions);
+    const OutcomeGradient outcome = {{tape.run().steps(), Random(3).vectors(tape.tissue().node_count())}};
+    return tape.gradient(outcome, {.law = "contraction.apical"})->by_strength;
+  };
+  EXPECT_EQ(gradient_with(1), gradient_with(3));
+}
+
+}  // namespace
