@@ -442,6 +442,34 @@ def surroundings():
     save(figure, "theory/surroundings.svg")
 
 
+def foundation():
+    figure, axes = canvas(760, 300)
+    polygon(axes, [(20, 20), (470, 20), (470, 70), (20, 70)], fill="#e2e8f0", edge="none")
+    line(axes, (20, 70), (470, 70), color=FAINT, width=3)
+    for x, low, next_low in ((50, 150, 108), (180, 108, 108), (310, 108, 150)):
+        cell(axes, (x, low + 120), (x + 130, next_low + 120), (x + 130, next_low), (x, low), width=4)
+        line(axes, (x, low), (x + 130, next_low), color=BASAL, width=4)
+    for x, low in ((50, 150), (180, 108), (310, 108), (440, 150)):
+        spring(axes, (x - 9, 70), (x - 9, low), sway=6, width=2)
+        dots(axes, [(x, 70)], TEXT, 18)
+        dots(axes, [(x, low)])
+        arrow(axes, (x + 9, 70), (x + 9, low), TEXT, width=2, head=9)
+    label(axes, (466, 108), "$d$", TEXT, BIG)
+    label(axes, (245, 44), "anchors: reference positions", TEXT)
+    label(axes, (245, 168), "cells")
+    curve = inset(figure, (545, 62, 200, 220), "displacement along $n$", "pressure on the face")
+    d = np.linspace(-1, 1, 100)
+    curve.plot(d, d, color=FORCE)
+    curve.plot(d, np.maximum(0, d), color=APICAL, linestyle=(0, (4, 3)))
+    curve.axhline(0, color=FAINT, linewidth=1)
+    curve.set(xlim=(-1, 1), ylim=(-1.05, 1.15))
+    curve.set_xticks([0], ["0"])
+    curve.set_yticks([0], ["0"])
+    label(curve, (0.38, 0.75), "$k\\,d$", FORCE)
+    label(curve, (-0.45, 0.2), "one-sided", APICAL)
+    save(figure, "theory/foundation.svg")
+
+
 def ties():
     figure, axes = canvas(760, 320)
     planes, inside = [], []
@@ -544,7 +572,7 @@ def energy():
 
 
 LAWS = (contraction, cortex, division, corotational, neo_hookean, shape_memory, corner_barrier, cell_volume, vitelline, shell_drag,
-        coulomb, self_contact, enclosed_volume, surroundings, ties, mirror, periodic, energy)
+        coulomb, self_contact, enclosed_volume, surroundings, foundation, ties, mirror, periodic, energy)
 
 if __name__ == "__main__":
     for law in LAWS:

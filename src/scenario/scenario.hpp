@@ -300,6 +300,14 @@ struct PressureInput : ActingInput {
   double pressure_Pa = 0;  // into the cell; dead load on the reference face
 };
 
+/// Springs and drag that hold faces to their reference positions; the program scales the springs.
+struct FoundationInput : ActingInput {
+  FoundationInput() { faces = "basal"; }
+  double stiffness_nN_per_um3 = 0;
+  double drag_Pa_s_per_um = 0;
+  std::string resists = "all";  // all | normal | one-sided
+};
+
 /// Laser ablation or optogenetic inhibition: loss of cortical and contractile strength.
 struct AblationInput {
   std::string region;
@@ -348,6 +356,7 @@ struct Scenario {
   OutputInput output;
   std::map<std::string, HoldInput> holds;
   std::map<std::string, PressureInput> pressures;
+  std::map<std::string, FoundationInput> foundations;
   std::map<std::string, DivisionInput> divisions;
   std::map<std::string, AblationInput> ablations;
   std::map<std::string, ExpectInput> expect;  // keys of summary.json, including monitors

@@ -230,7 +230,7 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("volume", "projection_weights", words::projection_weights);
   expect_words("contraction.*", "edges", words::edges);
   expect_words("cortex.*", "faces", words::edges);
-  for (const char* table : {"contraction.*", "cortex.*", "pressure.*", "elasticity.*"}) {
+  for (const char* table : {"contraction.*", "cortex.*", "pressure.*", "foundation.*", "elasticity.*"}) {
     expect_words(table, "profile.shape", words::profile_shapes);
     expect_words(table, "profile.axis", words::profile_axes);
     expect_words(table, "variation.by", words::variation_bys);
@@ -246,6 +246,7 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("self_contact", "surface", words::contact_surfaces);
   expect_words("hold.*", "directions", words::axes);
   expect_words("pressure.*", "face", words::surfaces);
+  expect_words("foundation.*", "faces", words::surfaces);
   expect_words("ablation.*", "faces", words::edges);
   expect_words("division.*", "when", words::division_triggers);
   expect_words("division.*", "plane", words::division_planes);
@@ -260,12 +261,12 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("monitor.*", "reference_at", words::reference_times);
 
   // The rest of the keys that take words: names of quantities and of measure sets have tables of their own, these three
-  // are no enums, and of enclosed surfaces there is one.
+  // are no enums, of enclosed surfaces there is one, and resistances are known to foundations only.
   int with_words = 0;
   for (const ScenarioTable& info : scenario_tables())
     for (const KeyRow& row : info.rows) with_words += row.allowed.words.empty() ? 0 : 1;
-  EXPECT_EQ(tables + 6, with_words)
-      << "embryo.shape, elasticity.model, volume.method, monitor.*.quantity, enclosed.*.surface, measure.sets";
+  EXPECT_EQ(tables + 7, with_words) << "embryo.shape, elasticity.model, volume.method, monitor.*.quantity, "
+                                       "enclosed.*.surface, measure.sets, foundation.*.resists";
 }
 
 TEST(Suggest, TheNearestOfSeveralThatAreNear) {

@@ -62,10 +62,21 @@ void expect_same_forces(const Mirror& mirror, const Tissue& side, const Vectors&
 
 TEST(FullModel, EachLawOfASideIsThatOfAHalfOrAQuarter) {
   const std::string slice = "base = \"furrow-slice\"";
+  const std::string on_foundations = furrow + R"([foundation.outside]
+region = "belly"
+faces = "apical"
+stiffness_nN_per_um3 = 0.01
+drag_Pa_s_per_um = 3
+resists = "normal"
+[foundation.inside]
+region = "all"
+stiffness_nN_per_um3 = 0.01
+resists = "one-sided"
+)";
   std::set<std::string> laws;
   for (const auto& [text, overrides] : std::vector<std::pair<std::string, std::vector<std::string>>>{
            {furrow, {planes[0], "enclosed.yolk.volume=compliant", compliant}},
-           {furrow, {planes[1], "enclosed.yolk.volume=held"}},
+           {on_foundations, {planes[1], "enclosed.yolk.volume=held"}},
            {furrow,
             {planes[1], "embryo.elements_per_cell=[2,1,2]", "dynamics.density_kg_per_m3=1000",
              "time.integrator=backward-euler", "elasticity.model=shape-memory"}},
@@ -124,9 +135,9 @@ TEST(FullModel, EachLawOfASideIsThatOfAHalfOrAQuarter) {
       expect_same_forces(mirror, side->tissue, forces, whole_forces, "forces of a volume");
     }
   }
-  EXPECT_EQ(laws,
-            (std::set<std::string>{"contraction", "corner barrier", "cortex", "dilatation", "drag", "elasticity",
-                                   "enclosed volume", "inertia", "pressure", "self-contact", "shape memory", "ties"}));
+  EXPECT_EQ(laws, (std::set<std::string>{"contraction", "corner barrier", "cortex", "dilatation", "drag", "elasticity",
+                                         "enclosed volume", "foundation", "inertia", "pressure", "self-contact",
+                                         "shape memory", "ties"}));
 }
 
 // Of two runs to the same time, the columns that say where they are.

@@ -1,0 +1,78 @@
+// An elastic, viscous foundation under faces of cells: springs and drag per area of the reference faces
+// (docs/theory/foundation.md).
+//
+// A node with reference area A, normal n and displacement d from its anchor has the energy
+//   A (a(t) k/2 |P d|^2 + c/(2h) |P m|^2),
+// with program a, stiffness k and drag c per area, and m its movement in the step h. P is 1, or n n^T; a one-sided
+// spring acts only while d.n > 0, into the foundation.
+#pragma once
+
+#include "mechanics/active/cell_pattern.hpp"
+#include "mechanics/active/program.hpp"
+#include "mechanics/law.hpp"
+
+namespace plica {
+
+/// Parameters of a foundation, as in [foundation.NAME] of the scenario.
+struct FoundationRule {
+  enum class Resists { all, normal, one_sided };
+  CellSide side = CellSide::basal;
+  double stiffness = 0;  // k, nN/um^3
+  double drag = 0;       // c, nN s/um^3; along the normal if one-sided, in both directions
+  Resists resists = Resists::all;
+  Program program = {};  // time course of k
+};
+
+/// Foundation law. Cell strengths scale stiffness and drag. It owns its anchors: after a change of the tissue, new
+/// nodes are anchored at the mean of those that they lie between.
+class Foundation final : public Law {
+ public:
+  Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule rule);
+
+  [[nodiscard]] std::string_view name() const override { return "foundation"; }
+  [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Foundation>(*this); }
+  [[nodiscard]] double energy(const Step& step) const override;
+  [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
+  void add_forces(const Step& step, std::span<Vec3> forces) const override;
+  void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
+  void add_tangent(const Step& step, TangentSink& tangent) const override;
+  [[nodiscard]] double rounding(const Step& step, double position_rounding) const override;
+
+  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
+                                                    std::span<const Vec3> positions) const override;
+  /// Anchors of all nodes.
+  [[nodiscard]] std::vector<double> past() const override;
+  [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const TissueChange& change,
+                                              std::span<const Vec3> positions,
+                                              std::span<const double> past) const override;
+
+  [[nodiscard]] std::vector<double> program_points_s() const override { return rule_.program.times_s(); }
+  [[nodiscard]] std::vector<double> program_jumps_s() const override { return rule_.program.jumps_s(); }
+  [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
+
+ private:
+  struct Support {  // of a node
+    std::size_t node = 0;
+    double area = 0;  // um^2, times strengths
+    Vec3 normal;      // out of the tissue
+  };
+  Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule rule, Vectors anchors);
+  [[nodiscard]] bool is_pressed(const Support& support, const Step& step) const;
+  [[nodiscard]] double spring(const Support& support, double time_s) const {
+    return support.area * rule_.stiffness * rule_.program.at(time_s);
+  }
+  [[nodiscard]] double damper(const Support& support, const Step& step) const {
+    return support.area * rule_.drag / step.rate_s;
+  }
+  [[nodiscard]] Vec3 resisted(const Support& support, const Vec3& d) const;
+  [[nodiscard]] Vec3 displacement(const Support& support, const Step& step) const;
+  [[nodiscard]] Vec3 movement(const Support& support, const Step& step) const;
+  [[nodiscard]] double stored(const Step& step, double activity) const;
+
+  FoundationRule rule_;
+  CellPattern pattern_;
+  Vectors anchors_;  // nodes; um
+  std::vector<Support> supports_;
+};
+
+}  // namespace plica

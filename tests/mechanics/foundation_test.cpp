@@ -1,0 +1,184 @@
+// Springs and drag to the reference faces: derivatives, a block pressed onto a Winkler foundation, and what a division
+// leaves.
+#include "mechanics/foundation.hpp"
+
+#include "core/threads.hpp"
+#include "support/divided.hpp"
+#include "support/law_checks.hpp"
+#include "support/resumed.hpp"
+#include "support/scenarios.hpp"
+
+namespace {
+
+using Resists = FoundationRule::Resists;
+
+constexpr double winkler = 0.02;  // nN/um^3
+
+FoundationRule basal_springs(Resists resists, double drag = 0, Program program = {}) {
+  return {CellSide::basal, winkler, drag, resists, std::move(program)};
+}
+
+TEST(Foundation, DerivativesAgreeWithFiniteDifferences) {
+  const Tissue tissue = distorted_block(two_cells, 2, 1);
+  for (const Resists resists : {Resists::all, Resists::normal, Resists::one_sided}) {
+    const Foundation law(tissue, CellSet{true, false}, basal_springs(resists, 0.1, Program({0, 2}, {0.2, 1})));
+    check_derivatives(law, tissue, 4);
+    check_semidefinite_tangent(law, tissue, 4, false);
+  }
+}
+
+TEST(Foundation, EnergyFlowIsTheWorkOfItsForces) {
+  const Tissue tissue = distorted_block(two_cells, 2, 2);
+  for (const Resists resists : {Resists::all, Resists::normal})
+    check_energy_flow(Foundation(tissue, CellSet{true, true}, basal_springs(resists, 0.1)), tissue);
+}
+
+TEST(Foundation, AtReferenceThereIsNoForce) {
+  const Tissue tissue = distorted_block(two_cells, 2, 3);
+  for (const Resists resists : {Resists::all, Resists::normal, Resists::one_sided}) {
+    const Foundation law(tissue, CellSet{true, true}, basal_springs(resists, 0.1));
+    EXPECT_EQ(largest(forces_of(law, at_rest(tissue).step())), 0);
+    EXPECT_EQ(law.energy(at_rest(tissue).step()), 0);
+  }
+}
+
+// 40 x 20 um of base: force k A u along z, and along x where faces cannot slide; a lifted base is free if one-sided.
+TEST(Foundation, ForceIsModulusTimesAreaTimesResistedDisplacement) {
+  const Tissue tissue = build_block(two_cells);
+  for (const auto& [resists, moved, expected] :
+       std::vector<std::tuple<Resists, Vec3, Vec3>>{{Resists::all, {1, 0, -2}, {-1, 0, 2}},
+                                                    {Resists::normal, {1, 0, -2}, {0, 0, 2}},
+                                                    {Resists::normal, {1, 0, 2}, {0, 0, -2}},
+                                                    {Resists::one_sided, {1, 0, -2}, {0, 0, 2}},
+                                                    {Resists::one_sided, {1, 0, 2}, {0, 0, 0}}}) {
+    Motion motion = at_rest(tissue);
+    for (Vec3& x : motion.positions) x += moved;
+    motion.previous_positions = motion.positions;
+    const Foundation law(tissue, CellSet{true, true}, basal_springs(resists, 0.1));
+    EXPECT_LE((resultant(forces_of(law, motion.step())) - winkler * 800 * expected).norm(), 1e-11);
+  }
+}
+
+TEST(Foundation, DragIsTimesAreaAndSpeedAndItsProgramScalesSprings) {
+  const Tissue tissue = build_block(two_cells);
+  Motion motion = at_rest(tissue);
+  for (Vec3& x : motion.positions) x += Vec3(0, 0, -2);
+  motion.rate_s = 0.5, motion.end_time_s = 1;
+  const Foundation law(tissue, CellSet{true, false}, basal_springs(Resists::normal, 0.1, Program({0, 2}, {0, 1})));
+  EXPECT_LE((resultant(forces_of(law, motion.step())) - 400 * Vec3(0, 0, 0.5 * winkler * 2 + 0.1 * 4)).norm(), 1e-11);
+}
+
+// Anchors, areas and normals of new nodes lie between those of old ones, also where the tissue has moved meanwhile.
+TEST(Foundation, ADivisionChangesNoForceOnASheetThatMovesAsOne) {
+  Model model(build_block({.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 3, 1}}));
+  model.laws.push_back(std::make_unique<Foundation>(model.tissue, CellSet(12, true), basal_springs(Resists::all)));
+  State state = rest_state(model);
+  for (Vec3& x : state.positions) x += Vec3(1, 2, 3);
+  Random random(5);
+  for (int round = 0; round < 3; ++round) {
+    divide_cells(model, state, random_divisions(model.tissue, 0.5, random));
+    Motion motion = at_rest(model.tissue);
+    motion.positions = motion.previous_positions = state.positions;
+    const Vectors forces = forces_of(*model.laws[0], motion.step());
+    EXPECT_LE((resultant(forces) + winkler * 4800 * Vec3(1, 2, 3)).norm(), 1e-9);
+  }
+  EXPECT_GT(model.tissue.cells.size(), 20U);
+  const std::unique_ptr<Law> again = model.laws[0]->restored(model.tissue, no_change(model.tissue),
+                                                             model.tissue.rest_positions, model.laws[0]->past());
+  const Motion motion = random_motion(model.tissue, 3, 6);
+  EXPECT_EQ(forces_of(*again, motion.step()), forces_of(*model.laws[0], motion.step()));
+  EXPECT_THROW((void)model.laws[0]->restored(model.tissue, no_change(model.tissue), {}, std::vector<double>(3)),
+               InvalidNumbers);
+}
+
+const std::string pressed = block_table(60, 40, 20, "3, 2, 1") + R"([elasticity]
+poisson_ratio = 0.3
+[foundation.ground]
+region = "all"
+stiffness_nN_per_um3 = 0.02
+drag_Pa_s_per_um = 50
+resists = "normal"
+[pressure.weight]
+region = "all"
+pressure_Pa = 100
+[hold.x]
+region = "all"
+directions = ["x"]
+x_um = [-31, -29]
+[hold.y]
+region = "all"
+directions = ["y"]
+y_um = [-21, -19]
+[time]
+end_s = 900
+[stop]
+equilibrium_speed_um_per_min = 1e-6
+[monitor.base]
+quantity = "position"
+face = "basal"
+axis = "z"
+)";
+
+// A pressure of 0.1 kPa on a modulus of 0.02 kPa/um: the base sinks evenly by 5 um.
+TEST(Foundation, ABlockUnderPressureSinksByPressureOverModulus) {
+  Simulation simulation(scenario_of(pressed));
+  const double from = *simulation.measures().monitors.at(0);
+  ASSERT_EQ(simulation.run(), RunStatus::equilibrium) << simulation.failure();
+  EXPECT_NEAR(*simulation.measures().monitors.at(0) - from, -5, 1e-6);
+  double lowest = 0, highest = -100;
+  const Tissue& tissue = simulation.model().tissue;
+  for (const Facet& facet : tissue.basal_facets)
+    for (const NodeId node : facet.nodes) {
+      const double z = simulation.state().positions[node.index()].z();
+      lowest = std::min(lowest, z), highest = std::max(highest, z);
+    }
+  EXPECT_LE(highest - lowest, 1e-5);
+}
+
+// Through a division, a program's jump, and on other threads.
+TEST(Foundation, RunsResumeBitwiseOnAnyNumberOfThreads) {
+  const Scenario scenario =
+      scenario_of(pressed, {"time.end_s=20", "foundation.ground.resists=one-sided",
+                            "foundation.ground.program={time_s=[0,9,9],activity=[1,1,0.3]}", "division.d.region=all",
+                            "division.d.at_s=4", "division.d.growth_s=8"});
+  Simulation whole(scenario);
+  std::vector<RunMemory> memories;
+  while (whole.step()) memories.push_back(whole.memory());
+  ASSERT_EQ(whole.status(), RunStatus::end_time) << whole.failure();
+  EXPECT_EQ(whole.model().tissue.cells.size(), 12U);
+  int resumed = 0;
+  for (std::size_t k = 0; k < memories.size(); k += 5, ++resumed) {
+    const ThreadCount threads(1 + resumed % 3);
+    Simulation rest(scenario);
+    go_on_by_bytes(rest, memories[k]);
+    while (rest.step()) (void)rest.memory();
+    expect_same(rest.state(), whole.state());
+    ASSERT_FALSE(testing::Test::HasFailure()) << "from step " << k + 1;
+  }
+  EXPECT_GE(resumed, 4);
+}
+
+TEST(FoundationKeys, ErrorsNameTheRemedy) {
+  const std::string table = "[foundation.a]\nregion = \"all\"\n";
+  const WrongScenarios cases = {
+      {table, "1: foundation.a: has no effect; set stiffness_nN_per_um3 or drag_Pa_s_per_um"},
+      {table + "drag_Pa_s_per_um = 1\nprogram = { time_s = [0, 1], activity = [0, 1] }",
+       "4: foundation.a.program: is not used without stiffness_nN_per_um3; remove it, or set stiffness_nN_per_um3"},
+      {table + "drag_Pa_s_per_um = 1\nresists = \"one-sided\"",
+       "4: foundation.a.resists: \"one-sided\" is not used without stiffness_nN_per_um3; set resists to \"all\" or "
+       "\"normal\", or set stiffness_nN_per_um3"},
+      {table + "stiffness_nN_per_um3 = 1\nresists = \"sliding\"",
+       "4: foundation.a.resists: \"sliding\" is unknown; set resists to one of: all | normal | one-sided"},
+      {table + "stiffness_nN_per_um3 = -1",
+       "3: foundation.a.stiffness_nN_per_um3: -1 is out of range; set stiffness_nN_per_um3 to a number >= 0"},
+      {table + "stiffness_nN_per_um3 = 1\nfaces = \"lateral\"",
+       "4: foundation.a.faces: \"lateral\" is unknown; set faces to one of: apical | basal"},
+  };
+  expect_errors(cases, load_errors);
+  EXPECT_EQ(model_errors("[embryo]\nshape = \"block\"\ncells = [2, 2, 2]\n[region.top]\nz_um = [0, 99]\n"
+                         "[foundation.a]\nregion = \"top\"\nstiffness_nN_per_um3 = 1"),
+            "test.toml:7: foundation.a.region: no cell of this region has a basal face; set region to cells with this "
+            "face, or change faces");
+}
+
+}  // namespace
