@@ -94,7 +94,8 @@ class Dilatation final : public BatchLaw<Dilatation, 8> {
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
-  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const override;
+  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements,
+                                           std::span<const GrowthTensor> tensors) const override;
 
  private:
   friend BatchLaw;
