@@ -23,6 +23,7 @@ PARTS = {
     "drosophila-shape-memory": [(335, 42, 660, 384)],
     "furrow-slice": TIMES,
     "sheet": [(680, 140, 1190, 890), (60, 120, 545, 900)],
+    "growing-disc": [(670, 55, 1000, 385), (670, 400, 1000, 500)],
     "wing-disc": [(590, 45, 900, 520), (505, 540, 985, 655)],
     "xenopus": LAST,
 }

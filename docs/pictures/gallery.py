@@ -282,6 +282,18 @@ def wing_disc():
     write(figure, "door-gallery", 96, 700)
 
 
+def growing():
+    """A sheet whose middle has grown, cut open."""
+    run = result("growing-disc", "growing-disc")
+    figure, axes = new(800, 480)
+    start = run.frames[0].polygons()
+    camera = Camera(back=(0.8, -0.35, 0.55), up=(0, 0, 1))
+    sheet_picture(axes, run.frames[-1], at_place((420, 285), 4.1), camera, start.centres[:, 0] < 12)
+    bar(axes, 60, 48, 50, 4.1)
+    area_bar(axes, 480, 52)
+    write(figure, "growing")
+
+
 def endless():
     """One period of an endless fold."""
     run = result("endless", scenario_of_page("how-to/sheet.md", "endless"))
@@ -538,7 +550,7 @@ def readme():
         write(names["figure"], "readme", 64)
 
 
-CARDS = {one.__name__: one for one in (closing, measured, living, deep, twist, wing_disc, endless, sphere, ablation, light, division, feedback, labels, phases, report, doors, readme)}
+CARDS = {one.__name__: one for one in (closing, measured, living, deep, twist, wing_disc, growing, endless, sphere, ablation, light, division, feedback, labels, phases, report, doors, readme)}
 
 if __name__ == "__main__":
     for card in sys.argv[2:] or CARDS:

@@ -442,6 +442,39 @@ def surroundings():
     save(figure, "theory/surroundings.svg")
 
 
+def growth():
+    figure, axes = canvas(760, 300)
+
+    def box(x, wide, high, color=None):
+        low, left = 60, x - wide / 2
+        corners = [(left, low + high), (left + wide, low + high), (left + wide, low), (left, low)]
+        cell(axes, *corners, width=4)
+        return corners
+
+    def ghost(x):
+        corners = [(x - 40, 160), (x + 40, 160), (x + 40, 60), (x - 40, 60)]
+        for a, b in zip(corners, [*corners[1:], corners[0]]):
+            line(axes, a, b, color=TEXT, width=1.5, linestyle=(0, (4, 3)))
+    box(125, 130, 130)
+    ghost(125)
+    for end in ((188, 125), (62, 125), (125, 188)):
+        arrow(axes, (125, 125), end, FORCE)
+    label(axes, (172, 145), "$e_1$", FORCE, BIG)
+    label(axes, (146, 172), "$e_3$", FORCE, BIG)
+    label(axes, (125, 250), "rest shape")
+    label(axes, (125, 25), "$G$", TEXT, BIG)
+    box(370, 130, 130)
+    label(axes, (370, 250), "free")
+    label(axes, (370, 25), "$F=G$", TEXT, BIG)
+    box(630, 80, 170)
+    for x, sign in ((590, -1), (670, 1)):
+        polygon(axes, [(x, 50), (x, 240), (x + 16 * sign, 240), (x + 16 * sign, 50)], fill="#94a3b8", edge="none")
+        arrow(axes, (x + 55 * sign, 145), (x + 18 * sign, 145), FORCE)
+    label(axes, (630, 265), "between walls")
+    label(axes, (630, 25), "$F=F_eG$", TEXT, BIG)
+    save(figure, "theory/growth.svg")
+
+
 def foundation():
     figure, axes = canvas(760, 300)
     polygon(axes, [(20, 20), (470, 20), (470, 70), (20, 70)], fill="#e2e8f0", edge="none")
@@ -599,7 +632,7 @@ def energy():
     save(figure, "theory/energy.svg")
 
 
-LAWS = (contraction, cortex, division, corotational, neo_hookean, shape_memory, corner_barrier, cell_volume, vitelline, shell_drag,
+LAWS = (contraction, cortex, division, growth, corotational, neo_hookean, shape_memory, corner_barrier, cell_volume, vitelline, shell_drag,
         coulomb, self_contact, enclosed_volume, surroundings, foundation, ties, mirror, periodic, signals, energy)
 
 if __name__ == "__main__":

@@ -215,6 +215,20 @@ def wing_disc():
     write(figure, "scenarios/wing-disc.png", colours=64)
 
 
+def growing_disc():
+    """A flat patch whose middle grows and folds, from above and cut across."""
+    run = run_of("growing-disc")
+    figure, axes = canvas(WIDTH, 620)
+    for column, time in enumerate((0, 30, 60)):
+        frame, x = run.frames.at(time), 168 + 332 * column
+        outside(axes, frame, by_area(frame), ABOVE, (x, 400), 2.6, width=0.4)
+        section(axes, frame, None, by_area(frame), (x, 190), 2.6, width=1.1, closed=False)
+        label(axes, (x, 593), minutes(frame), size=LETTERS, weight="bold")
+    bar(axes, 30, 30, 50, 2.6)
+    area_bar(axes, 620, 36)
+    write(figure, "scenarios/growing-disc.png", colours=64)
+
+
 def division_demo():
     """A row of three cells, of which one divides, from the side."""
     run = run_of("division-demo")
@@ -268,6 +282,7 @@ PICTURES = {
     "drosophila-living": partial(sections, "drosophila-living", (0, 9, 12, 14, 20), 50, 0.98),
     "furrow-slice": partial(sections, "furrow-slice", (0, 9, 12, 15, 20), 50, 0.98),
     "wing-disc": wing_disc,
+    "growing-disc": growing_disc,
     "division-demo": division_demo,
     "ellipsoid": ellipsoid,
 }

@@ -102,7 +102,7 @@ inline double parallel_dot(std::span<const double> a, std::span<const double> b)
   return total;
 }
 
-/// The same of vectors of nodes.
+/// Dot product of vectors of nodes, summed likewise.
 inline double parallel_dot(std::span<const Vec3> a, std::span<const Vec3> b) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
   const auto numbers = [](std::span<const Vec3> vectors) {

@@ -165,7 +165,7 @@ void restore_momentum(const Model& model, const TissueChange& change, const Vec3
 TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned) {
   if (const auto why = why_indivisible(model.tissue)) throw std::logic_error("cells cannot divide: " + *why);
   // Finished growth is dropped; the last shape and target stay.
-  if (std::optional<Model> now = grown(model, state.time_s)) model = std::move(*now);
+  if (std::optional<Model> now = grown(model, model, state.internals, state.time_s)) model = std::move(*now);
   std::erase_if(model.growths, [&](const Growth& growth) { return growth.end_s <= state.time_s; });
 
   const Vec3 momentum_before = momentum(model, state.velocities);
@@ -200,32 +200,6 @@ TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDiv
   if (!model.masses().empty()) restore_momentum(model, change, momentum_before, state.velocities);
   model.revision = ++Model::revisions;
   return change;
-}
-
-std::optional<Model> grown(const Model& model, double time_s) {
-  // Exactly `to` at the end, and if both are equal: stiffness is recomputed only for shapes that change.
-  const auto between = [](double from, double to, double part) { return part < 1 ? from + part * (to - from) : to; };
-  std::vector<ElementId> reshaped;
-  std::optional<Tissue> tissue;
-  for (const Growth& growth : model.growths) {
-    const double part = growth.part(time_s), target = between(growth.target_from, growth.target_to, part);
-    std::vector<Vec3> rest(growth.rest_from.size());
-    for (std::size_t i = 0; i < rest.size(); ++i)
-      for (int axis = 0; axis < 3; ++axis)
-        rest[i][axis] = between(growth.rest_from[i][axis], growth.rest_to[i][axis], part);
-    const Cell& before = model.tissue.cells[growth.cell.index()];
-    const bool is_reshaped = rest != before.rest_shape;
-    if (!is_reshaped && before.target_volume == target) continue;
-    if (!tissue) tissue = model.tissue;
-    Cell& cell = tissue->cells[growth.cell.index()];
-    cell.target_volume = target;
-    if (!is_reshaped) continue;
-    cell.rest_shape = std::move(rest);
-    set_element_rest_shapes(*tissue, growth.cell);
-    for (int e = 0; e < cell.element_count; ++e) reshaped.emplace_back(cell.first_element.index() + e);
-  }
-  if (!tissue) return std::nullopt;
-  return Model(model, std::move(*tissue), reshaped);
 }
 
 }  // namespace plica

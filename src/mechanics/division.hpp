@@ -1,8 +1,7 @@
-// Cell division and growth of daughters between steps: changes of model and state. The cut itself: tissue/division.hpp.
+// Cell division between steps: changes of model and state. The cut itself: tissue/division.hpp.
 // Theory: docs/theory/division.md.
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "mechanics/model.hpp"
@@ -21,9 +20,5 @@ struct PlannedDivision {
 /// and velocities are inherited. The target volume of a daughter starts at the volume of its half, its rest shape at
 /// half of that of the mother; both then grow (`grown`). std::logic_error if the tissue is indivisible.
 TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned);
-
-/// Return the model with the rest shapes and target volumes that growing daughters have at `time_s`; empty if these are
-/// its own.
-std::optional<Model> grown(const Model& model, double time_s);
 
 }  // namespace plica

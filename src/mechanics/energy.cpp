@@ -59,7 +59,8 @@ std::vector<EnergyFlow> energy_flows(const Model& model, const State& before, co
     flows.push_back(model.laws[l]->energy_flow(completed));
   }
   flows.emplace_back();
-  if (model.volumes.is_held() && !model.growths.empty()) flows.back().active = work_of_pressures(model, before, after);
+  if (model.volumes.is_held() && (!model.growths.empty() || cells_grow(model, before.internals, before.time_s)))
+    flows.back().active = work_of_pressures(model, before, after);
   return flows;
 }
 

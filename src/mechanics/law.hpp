@@ -24,6 +24,7 @@ struct Model;
 struct TissueChange;
 struct CellPattern;
 class LawDerivatives;
+struct GrowthTensor;
 template <class Value>
 struct ByCell;
 using CellArray = ByCell<double>;
@@ -203,12 +204,20 @@ class Law {
   }
 
   /// Return the law for the tissue after growth, in which these elements have other rest shapes, and cells other target
-  /// volumes.
-  [[nodiscard]] virtual std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements) const {
+  /// volumes. `tensors`: growth of each cell since the last change of the tissue (`grow`); may be empty.
+  [[nodiscard]] virtual std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements,
+                                                   std::span<const GrowthTensor> /*tensors*/) const {
     std::unique_ptr<Law> law = clone();
     for (const ElementId e : elements) law->fit(tissue, e.index());
     return law;
   }
+
+  /// Multiply the growth of cells by that of this law, from the last change of the tissue to a time at or after that of
+  /// the internal state. Laws without growth do nothing; without any, `tensors` stays empty.
+  virtual void grow(std::span<const double> /*internal*/, double /*time_s*/,
+                    std::vector<GrowthTensor>& /*tensors*/) const {}
+  /// Whether any cell grows or shrinks just after a time.
+  [[nodiscard]] virtual bool is_growing(std::span<const double> /*internal*/, double /*time_s*/) const { return false; }
 
   /// Return times at which its programs begin or bend, s; steps end on them.
   [[nodiscard]] virtual std::vector<double> program_points_s() const { return {}; }

@@ -11,14 +11,9 @@
 
 namespace plica {
 
-double Growth::part(double time_s) const {
-  if (time_s >= end_s) return 1;
-  return time_s <= start_s ? 0 : (time_s - start_s) / (end_s - start_s);
-}
-
 Model::Model(Tissue t) : tissue(std::move(t)), volumes(tissue), held(tissue.node_count(), {false, false, false}) {}
 
-Model::Model(const Model& other, Tissue t, std::span<const ElementId> reshaped)
+Model::Model(const Model& other, Tissue t, std::span<const ElementId> reshaped, std::span<const GrowthTensor> tensors)
     : tissue(std::move(t)),
       volumes(other.volumes.grown(tissue)),
       signals(other.signals),
@@ -26,7 +21,7 @@ Model::Model(const Model& other, Tissue t, std::span<const ElementId> reshaped)
       growths(other.growths),
       stiffness_scale(other.stiffness_scale) {
   for (const auto& law : other.laws) {
-    laws.push_back(law->grown(tissue, reshaped));
+    laws.push_back(law->grown(tissue, reshaped, tensors));
     laws.back()->set_label(law->label());
   }
   for (const auto& constraint : other.constraints) constraints.push_back(constraint->clone());

@@ -11,6 +11,7 @@
 
 #include "mechanics/constraint.hpp"
 #include "mechanics/constraints/cell_volume.hpp"
+#include "mechanics/growth.hpp"
 #include "mechanics/law.hpp"
 #include "mechanics/obstacle.hpp"
 #include "mechanics/signals/signals.hpp"
@@ -18,24 +19,8 @@
 
 namespace plica {
 
-/// Growth of a daughter cell from half of its mother to its final size, linear in time.
-struct Growth {
-  CellId cell;
-  std::vector<Vec3> rest_from, rest_to;   // um; corners, as Cell::rest_shape
-  double target_from = 0, target_to = 0;  // volume, um^3
-  double start_s = 0, end_s = 0;
-
-  /// Return the completed fraction, 0 to 1.
-  [[nodiscard]] double part(double time_s) const;
-
-  static auto parts(auto& growth) {
-    return std::tie(growth.cell, growth.rest_from, growth.rest_to, growth.target_from, growth.target_to, growth.start_s,
-                    growth.end_s);
-  }
-};
-
-/// Topology and parameters. Constant between divisions: while cells grow, each step has a model of its own
-/// (mechanics/division.hpp).
+/// Topology and parameters. Constant between divisions: while cells grow, each step has a model of its own (`grown`,
+/// mechanics/growth.hpp).
 struct Model {
   Tissue tissue;
   CellVolumes volumes;  // a constraint whose multipliers come before those of the others
@@ -44,16 +29,17 @@ struct Model {
   std::vector<std::unique_ptr<Obstacle>> obstacles;
   Signals signals;
   std::vector<std::array<bool, 3>> held;  // nodes; fixed directions x, y, z
-  std::vector<Growth> growths;            // in progress, or finished since the last division
+  std::vector<Growth> growths;            // of daughters; in progress, or finished since the last division
   double stiffness_scale = 1;             // Young's modulus, kPa, for load-independent tolerances
   std::uint64_t revision = ++revisions;   // number of its own; another after a division
   static inline std::atomic<std::uint64_t> revisions = 0;
 
   /// Make a model with held cell volumes and no laws.
   explicit Model(Tissue t);
-  Model(const Model& other) : Model(other, other.tissue, {}) {}
-  /// Make a copy whose cells have the rest shapes and target volumes of `t`, with other rest shapes of these elements.
-  Model(const Model& other, Tissue t, std::span<const ElementId> reshaped);
+  Model(const Model& other) : Model(other, other.tissue, {}, {}) {}
+  /// Make a copy whose cells have the rest shapes and target volumes of `t`, with other rest shapes of these elements;
+  /// `tensors`: growth of cells since the last change of the tissue, or none.
+  Model(const Model& other, Tissue t, std::span<const ElementId> reshaped, std::span<const GrowthTensor> tensors);
   Model(Model&&) = default;
   Model& operator=(Model&&) = default;
 

@@ -39,7 +39,8 @@ class NodeLaw : public Law {
                                                     std::span<const Vec3> /*positions*/) const final {
     return std::make_unique<Self>(self().remade(tissue));
   }
-  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId>) const final {
+  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId>,
+                                           std::span<const GrowthTensor>) const final {
     return std::make_unique<Self>(self().remade(tissue));
   }
 

@@ -264,8 +264,9 @@ bool any_force_acts(const Scenario& scenario) {
 
 // Warns of tables without effect, and of times after the end of the run.
 void advise_on_effects(const Scenario& scenario, const Model& model, Messages& out) {
-  if (!any_force_acts(scenario) && scenario.divisions.empty())
-    out.warn("no force acts, so the embryo does not move; add [contraction], [cortex], [pressure] or [division]");
+  if (!any_force_acts(scenario) && scenario.divisions.empty() && scenario.growths.empty())
+    out.warn(
+        "no force acts, so the embryo does not move; add [contraction], [cortex], [pressure], [growth] or [division]");
   for (const auto& [name, contraction] : scenario.contractions)
     if (contraction.stiffness_nN_per_um == 0 && contraction.preload_nN == 0 && contraction.tension_mN_per_m == 0)
       out.warn(

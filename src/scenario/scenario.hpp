@@ -262,6 +262,14 @@ struct DivisionInput {
   std::optional<int> max_generation;  // empty: 1 with `when`, no limit with a time
 };
 
+/// Growth of cells without division; program and profile scale the rate.
+struct GrowthInput : ActingInput {
+  std::optional<double> rate_per_h, final_ratio;  // of the volume; one of them
+  std::optional<double> in_plane;                 // empty: isotropic
+  std::string axis;                               // along | across; empty: none
+  std::optional<double> axis_ratio;
+};
+
 struct TimeInput {
   std::optional<double> step_s;             // empty: "adaptive"
   double first_step_s = 0.05;               // adaptive
@@ -383,6 +391,7 @@ struct Scenario {
   std::map<std::string, PressureInput> pressures;
   std::map<std::string, FoundationInput> foundations;
   std::map<std::string, DivisionInput> divisions;
+  std::map<std::string, GrowthInput> growths;
   std::map<std::string, AblationInput> ablations;
   std::map<std::string, ExpectInput> expect;  // keys of summary.json, including monitors
 };

@@ -57,18 +57,23 @@ State FullModel::whole_of(const Model& side, const State& state) const {
   return whole;
 }
 
+void FullModel::grow(double time_s) {
+  if (std::optional<Model> later = grown(model_, model(), state_.internals, time_s)) grown_ = std::move(later);
+}
+
 State FullModel::follow(const Model& side, const State& state) {
   State next = whole_of(side, state);
+  grow(next.time_s);
   const BackwardDifference rates = rates_of(state_, next);
   const Vectors earlier = rates.ahead > 0 ? earlier_positions(state_) : Vectors();
-  next.internals = next_internals(model_, {.positions = next.positions,
-                                           .previous_positions = state_.positions,
-                                           .previous_velocities = state_.velocities,
-                                           .rate_s = rates.rate_s,
-                                           .end_time_s = next.time_s,
-                                           .earlier_positions = earlier,
-                                           .ahead = rates.ahead,
-                                           .internals = state_.internals});
+  next.internals = next_internals(model(), {.positions = next.positions,
+                                            .previous_positions = state_.positions,
+                                            .previous_velocities = state_.velocities,
+                                            .rate_s = rates.rate_s,
+                                            .end_time_s = next.time_s,
+                                            .earlier_positions = earlier,
+                                            .ahead = rates.ahead,
+                                            .internals = state_.internals});
   follow_signals(model_, next);
   return std::exchange(state_, std::move(next));
 }
@@ -76,6 +81,7 @@ State FullModel::follow(const Model& side, const State& state) {
 void FullModel::go_to(const Model& side, const State& state, std::vector<std::vector<double>> internals) {
   state_ = whole_of(side, state);
   state_.internals = std::move(internals);
+  grow(state_.time_s);
 }
 
 std::vector<double> FullModel::of_side(const std::string& what, const std::string& noun,

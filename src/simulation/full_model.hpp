@@ -1,6 +1,7 @@
 // Full model of a symmetric embryo of which one side is solved; used for output and measures.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@ class FullModel {
   /// Starts in the reference state.
   FullModel(Model model, Mirror mirror);
 
-  [[nodiscard]] const Model& model() const { return model_; }
+  [[nodiscard]] const Model& model() const { return grown_ ? *grown_ : model_; }
   [[nodiscard]] const State& state() const { return state_; }
 
   /// Number of copies of the side in the full model: 2 or 4.
@@ -45,8 +46,10 @@ class FullModel {
   [[nodiscard]] std::vector<double> of_side(const std::string& what, const std::string& noun,
                                             const std::vector<double>& values) const;
   [[nodiscard]] State whole_of(const Model& side, const State& state) const;
+  void grow(double time_s);
 
   Model model_;
+  std::optional<Model> grown_;  // at the time of its state, if cells have grown
   Mirror mirror_;
   State state_;
 };

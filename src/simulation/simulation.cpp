@@ -238,7 +238,7 @@ void Simulation::go_on_from(RunMemory memory) {
   now_ = std::move(memory);
   if (full_model_) full_model_->go_to(*model_, now_.state, std::move(now_.whole_internals));
   step_length_ = StepLength(controls_, now_.wanted_step_s, now_.careful_steps);
-  grown_ = grown(*model_, now_.state.time_s);
+  grown_ = grown(*model_, *model_, now_.state.internals, now_.state.time_s);
   renew_stepper();
 }
 
@@ -271,10 +271,10 @@ void Simulation::restart_at_a_jump() {
   step_length_ = StepLength(controls_);
 }
 
-// Add the energy flows of the step and return them. Daughters are taken as grown at mid-step, since they do work
-// meanwhile.
+// Add the energy flows of the step and return them. Cells are taken as grown at mid-step, since they do work meanwhile.
 EnergyFlow Simulation::account_for_energy(const State& before) {
-  const std::optional<Model> midway = grown(solved(), 0.5 * (before.time_s + now_.state.time_s));
+  const std::optional<Model> midway =
+      grown(*model_, solved(), before.internals, 0.5 * (before.time_s + now_.state.time_s));
   std::vector<EnergyFlow> flows = energy_flows(midway ? *midway : solved(), before, now_.state);
   const double copies = full_model_ ? full_model_->copies() : 1;
   for (auto& [active, stored, dissipated] : flows) active *= copies, stored *= copies, dissipated *= copies;
@@ -320,6 +320,7 @@ bool Simulation::step(double until_s) {
   const std::vector<PlannedDivision> due = due_divisions(solved(), state, controls_.divisions);
   now_.at_equilibrium = speed < controls_.equilibrium_speed_um_per_s && due.empty() &&
                         are_at_rest(before.signals, state.signals, state.time_s - before.time_s) &&
+                        !cells_grow(*model_, state.internals, state.time_s) &&
                         has_come(last_of(controls_.program_points_s), state.time_s) &&
                         has_come(last_of(controls_.program_jumps_s), before.time_s);
   if (now_.at_equilibrium && !now_.equilibrium_time_s) now_.equilibrium_time_s = state.time_s;
@@ -383,7 +384,7 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
   while (true) {
     const double end_s = step_length_.propose_end_s(controls_, now_.state.time_s, until_s);
     const double duration_s = end_s - now_.state.time_s;
-    std::optional<Model> later = grown(solved(), end_s);
+    std::optional<Model> later = grown(*model_, solved(), now_.state.internals, end_s);
     const Model& model = later ? *later : solved();
     StepReport report = stepper_->advance(now_.state, duration_s, now_.steps == 0, next, &model);
     if (report.status == StepReport::Status::interrupted) return std::nullopt;

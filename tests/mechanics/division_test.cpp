@@ -103,7 +103,7 @@ TEST(DivideCells, HandsPressuresHoldsAndContactsOn) {
 }
 
 void grow(Model& model, double time_s) {
-  if (std::optional<Model> later = grown(model, time_s)) model = std::move(*later);
+  if (std::optional<Model> later = grown(model, model, {}, time_s)) model = std::move(*later);
 }
 
 TEST(Grow, TakesDaughtersFromHalvesToTheirMothersShapeAndVolume) {
@@ -210,7 +210,7 @@ TEST(Grow, MakesLawsOfTheNewRestShapes) {
   for (std::size_t l = 0; l < anew.size(); ++l) {
     SCOPED_TRACE(anew[l]->name());
     motion.internal = anew[l]->first_internal(tissue);
-    const std::unique_ptr<Law> law = before[l]->grown(tissue, reshaped);
+    const std::unique_ptr<Law> law = before[l]->grown(tissue, reshaped, {});
     EXPECT_EQ(forces_of(*law, motion.step()), forces_of(*anew[l], motion.step()));
     EXPECT_EQ(law->energy(motion.step()), anew[l]->energy(motion.step()));
     EXPECT_NE(forces_of(*before[l], motion.step()), forces_of(*anew[l], motion.step()));

@@ -161,6 +161,7 @@ const std::vector<AdviceCase> cases = {
      {{"contraction.c.region=all", "contraction.c.tension_mN_per_m=1"},
       {"cortex.c.region=all", "cortex.c.tension_mN_per_m=1"},
       {"pressure.p.region=all", "pressure.p.pressure_Pa=1"},
+      {"growth.g.region=all", "growth.g.rate_per_h=1"},
       {"division.d.region=one", "division.d.at_s=5"}}},
     {row + "[contraction.c]\nregion = \"one\"\n",
      "contraction.c: has no effect",
@@ -234,7 +235,7 @@ TEST(AdviceRemedies, EachEndsItsMessage) {
       ++tried;
     }
   }
-  EXPECT_EQ(tried, 36);
+  EXPECT_EQ(tried, 37);
 }
 
 // Each shape has its own keys.

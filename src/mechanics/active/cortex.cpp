@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "mechanics/growth.hpp"
 #include "tissue/tissue_change.hpp"
 
 namespace plica {
@@ -59,7 +60,6 @@ Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kerne
       rule_(std::move(rule)),
       pattern_(std::move(pattern)),
       faces_(acting_faces(tissue, rule_.side, pattern_)),
-      stretches_(faces_.size(), 1),
       activation_(tissue, rule_.activation) {
   for (const Face& face : faces_) {
     elements_.push_back(face.nodes);
@@ -68,7 +68,7 @@ Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kerne
   }
   chunks_ = chunks_of(tissue, elements_);
   batches_.resize(chunks_.batch_count());
-  take_rest_areas();
+  take_stretches(std::vector<double>(faces_.size(), 1));
 }
 
 void Cortex::take_rest_areas() {
@@ -325,9 +325,10 @@ class Cortex::Origins {
 void Cortex::inherit_faces(const Origins& origins, const Cortex& before, std::span<const Vec3> positions) {
   const std::vector<double> now = areas(positions);
   std::vector<double> stretches;
+  const std::vector<double> stretches_before = before.past();
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const std::vector<std::size_t> from = origins.of(faces_[f]);
-    stretches.push_back(from.empty() ? now[f] / rest_areas_[f] : origins.mean(from, before.stretches_));
+    stretches.push_back(from.empty() ? now[f] / rest_areas_[f] : origins.mean(from, stretches_before));
     // In a part of a tissue, the neighbour that is left out keeps its half of a wall.
     if (from.empty() || faces_[f].beyond || !before.faces_[from.front()].beyond) continue;
     faces_[f].share *= 0.5;
@@ -339,6 +340,7 @@ void Cortex::inherit_faces(const Origins& origins, const Cortex& before, std::sp
 void Cortex::take_stretches(std::vector<double> stretches) {
   stretches_ = std::move(stretches);
   for (std::size_t f = 0; f < faces_.size(); ++f) rest_areas_[f] *= stretches_[f];
+  ungrown_areas_ = rest_areas_;
   take_rest_areas();
 }
 
@@ -346,6 +348,29 @@ std::unique_ptr<Law> Cortex::with_strengths(std::span<const double> factors) con
   auto law = std::make_unique<Cortex>(*this);
   for (std::size_t c = 0; c < factors.size(); ++c) law->pattern_.strengths[c] *= factors[c];
   for (std::size_t f = 0; f < faces_.size(); ++f) law->strengths_[f] = strength_of(faces_[f], law->pattern_);
+  law->kept_ = {};
+  return law;
+}
+
+std::vector<double> Cortex::past() const {
+  std::vector<double> stretches = stretches_;
+  for (std::size_t f = 0; f < faces_.size(); ++f) stretches[f] *= rest_areas_[f] / ungrown_areas_[f];
+  return stretches;
+}
+
+std::unique_ptr<Law> Cortex::grown(const Tissue& tissue, std::span<const ElementId> /*elements*/,
+                                   std::span<const GrowthTensor> tensors) const {
+  auto law = std::make_unique<Cortex>(*this);
+  if (tensors.empty()) return law;
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const Face& face = faces_[f];
+    const Vec3 normal = facet_area_vector(gather(tissue.rest_positions, face.nodes)).normalized();
+    const double own = tensors[face.cell.index()].area(normal);
+    law->rest_areas_[f] =
+        ungrown_areas_[f] * (face.beyond ? 0.5 * (own + tensors[face.beyond->index()].area(normal)) : own);
+  }
+  law->take_rest_areas();
+  law->activation_ = ShapeActivation(tissue, rule_.activation);
   law->kept_ = {};
   return law;
 }

@@ -47,12 +47,16 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
 
+  /// Reference areas grow with the faces, by the mean of both cells of a lateral face.
+  [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements,
+                                           std::span<const GrowthTensor> tensors) const override;
   /// Faces keep their reference area, per area in the undeformed tissue, and their strain (stress-free / reference
   /// area), also as parts of a face that was cut. The reference area of a face between daughters is its present one.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
-  /// Reference areas of faces born in divisions depend on positions then.
-  [[nodiscard]] std::vector<double> past() const override { return stretches_; }
+  /// Reference areas of faces born in divisions depend on positions then, and all on growth: reference areas / areas in
+  /// the undeformed tissue.
+  [[nodiscard]] std::vector<double> past() const override;
   [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
                                               std::span<const double> past) const override;
   [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
@@ -135,8 +139,10 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   CellPattern pattern_;
   std::vector<Face> faces_;         // faces with nonzero strength
   std::vector<double> rest_areas_;  // faces; um^2: A_r
-  std::vector<double> stretches_;   // faces; A_r / area in the undeformed tissue: 1 unless born after it
-  std::vector<double> strengths_;   // faces
+  // Faces, since the last change of the tissue: A_r / area in the undeformed tissue, 1 unless born after it, and the
+  // area (um^2) from which A_r grows.
+  std::vector<double> stretches_, ungrown_areas_;
+  std::vector<double> strengths_;  // faces
   ShapeActivation activation_;
   std::vector<FaceBatch> batches_;
   mutable FaceTensions kept_;  // of the last iterate, for all products of its linear system; one thread at a time

@@ -37,6 +37,21 @@ double Program::at(double time_s) const {
   return activities_[i - 1] + part * (activities_[i] - activities_[i - 1]);
 }
 
+double Program::integral(double from_s, double to_s) const {
+  if (times_.empty()) return to_s - from_s;
+  const auto from_first_point = [&](double time_s) {
+    if (time_s <= times_.front()) return activities_.front() * (time_s - times_.front());
+    double sum = activities_.back() * std::max(0.0, time_s - times_.back());
+    for (std::size_t i = 1; i < times_.size() && times_[i - 1] < time_s; ++i) {
+      const double length = times_[i] - times_[i - 1], passed = std::min(length, time_s - times_[i - 1]);
+      if (length > 0)
+        sum += passed * (activities_[i - 1] + 0.5 * passed / length * (activities_[i] - activities_[i - 1]));
+    }
+    return sum;
+  };
+  return from_first_point(to_s) - from_first_point(from_s);
+}
+
 std::vector<double> Program::jumps_s() const {
   std::vector<double> jumps;
   for (std::size_t i = 1; i < times_.size(); ++i)

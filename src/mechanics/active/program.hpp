@@ -16,6 +16,8 @@ class Program {
   [[nodiscard]] double at(double time_s) const;
   /// Return the activity with a delay of `delay_s`; 0 before time 0 of the program.
   [[nodiscard]] double delayed_at(double delay_s, double time_s) const;
+  /// Return the integral of the activity over a time, s.
+  [[nodiscard]] double integral(double from_s, double to_s) const;
   [[nodiscard]] const std::vector<double>& times_s() const { return times_; }
   [[nodiscard]] std::vector<double> jumps_s() const;
 

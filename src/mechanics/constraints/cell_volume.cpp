@@ -198,7 +198,8 @@ std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const Tiss
   return std::make_unique<Dilatation>(tissue, bulk_moduli_.after_division(tissue, change), cells_are_exact_, kernels_);
 }
 
-std::unique_ptr<Law> Dilatation::grown(const Tissue& tissue, std::span<const ElementId> elements) const {
+std::unique_ptr<Law> Dilatation::grown(const Tissue& tissue, std::span<const ElementId> elements,
+                                       std::span<const GrowthTensor> /*tensors*/) const {
   auto law = std::make_unique<Dilatation>(*this);
   if (elements_.empty()) return law;
   for (const ElementId e : elements) law->fit(tissue, e.index());

@@ -95,7 +95,7 @@ TEST(Dilatation, IsAgainstTheVolumeThatCellsAreHeldAt) {
   Tissue tissue = distorted_block({40, 20, 40, {2, 1, 1}, {2, 1, 2}}, 2, 6);
   const Dilatation at_own_volumes(tissue, in_elements(tissue, 3.0), true);
   for (Cell& cell : tissue.cells) cell.target_volume = 1.2 * cell_volume(tissue, cell, tissue.rest_positions);
-  const std::unique_ptr<Law> law = at_own_volumes.grown(tissue, {});
+  const std::unique_ptr<Law> law = at_own_volumes.grown(tissue, {}, {});
   Motion motion = at_rest(tissue);
   for (Vec3& x : motion.positions) x *= std::cbrt(1.2);
   EXPECT_GT(largest(forces_of(at_own_volumes, motion.step())), 1);
