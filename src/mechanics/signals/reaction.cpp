@@ -18,8 +18,6 @@ Reaction::Reaction(const std::string& text, const std::vector<std::string>& vari
                    const std::map<std::string, double>& constants) try
     : parser_(std::make_unique<Parser>()) {
   mu::Parser& parser = parser_->text;
-  parser.ClearPostfixOprt();
-  parser.EnableBuiltInOprt(true);
   parser_->values.resize(variables.size());
   for (std::size_t i = 0; i < variables.size(); ++i) parser.DefineVar(variables[i], &parser_->values[i]);
   for (const auto& [name, value] : constants) parser.DefineConst(name, value);

@@ -246,15 +246,17 @@ TEST(Signals, DaughtersKeepConcentrationsAndAmounts) {
   Random random(3);
   for (double& c : rule.initial) c = 2 + random.number();
   const Signals before(tissue, {rule});
-  const std::vector<double> volumes = volumes_of(tissue, tissue.rest_positions);
-  Vectors x = tissue.rest_positions;
+  Vectors x = tissue.rest_positions;  // bent, so that a cut changes volumes
+  for (std::size_t n = 0; n < tissue.free_node_count(); ++n) x[n] += random.vector(0.5);
+  tissue.place_hanging_positions(x);
+  const std::vector<double> volumes = volumes_of(tissue, x);
   const TissueChange change = divide(tissue, std::array<CellCut, 2>{{{CellId(3), 0}, {CellId(17), 1}}}, 0, x);
   x = with_new_nodes(tissue, change, x);
   const std::vector<double> after = volumes_of(tissue, x);
   const Signals::Values values = inherited_signals(change, volumes, after, before.initial());
   ASSERT_EQ(values[0].size(), 42u);
   EXPECT_EQ(values[0][3], values[0][40]);
-  EXPECT_NEAR(values[0][3], rule.initial[3], 1e-6 * rule.initial[3]);
+  EXPECT_NEAR(values[0][3], rule.initial[3], 0.02 * rule.initial[3]);
   EXPECT_NEAR(total(after, values[0]), total(volumes, rule.initial), 1e-12 * total(volumes, rule.initial));
   EXPECT_EQ(before.after(tissue, change).rules()[0].sources.size(), 42u);
 }
