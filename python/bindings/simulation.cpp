@@ -17,6 +17,7 @@
 #include "errors.hpp"
 #include "measure/cell_columns.hpp"
 #include "measure/cells.hpp"
+#include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/energy.hpp"
 #include "record/checkpoint.hpp"
 #include "record/time_left.hpp"
@@ -111,6 +112,15 @@ nb::object activity(const Simulation& simulation, const std::string& label) {
   for (std::size_t c = 0; c < model.tissue.cells.size(); ++c)
     result.push_back(
         model.laws[place]->activity_of(CellId(c), state.time_s, state.internals[place]).value_or(std::nan("")));
+  return array_of(std::move(result));
+}
+
+nb::object strength(const Simulation& simulation, const std::string& label) {
+  const Model& model = simulation.model();
+  const CellPattern* pattern = model.laws[place_of_law(model, label, true)]->pattern();
+  std::vector<double> result(model.tissue.cells.size(), 0.0);
+  if (pattern != nullptr && !pattern->cells.empty())
+    for (std::size_t c = 0; c < result.size(); ++c) result[c] = pattern->strengths[c];
   return array_of(std::move(result));
 }
 
@@ -325,6 +335,12 @@ void bind_simulation(nb::module_& module) {
           "activity",
           [](S& self, const std::string& law) {
             return self.with([&](const Simulation& s) { return activity(s, law); });
+          },
+          nb::arg("law"))
+      .def(
+          "strength",
+          [](S& self, const std::string& law) {
+            return self.with([&](const Simulation& s) { return strength(s, law); });
           },
           nb::arg("law"));
 }

@@ -230,6 +230,26 @@ def test_acts_that_cannot_be_are_refused_with_a_reason(session):
             raise Refused(made.failure)
 
 
+def test_strengths_of_laws_are_shown_at_rest_and_at_any_time_of_a_run(session):
+    """Profile at rest; profile times program in a run, with nothing where cells have been cut."""
+    name = "strength of cortex.apical"
+    wait(lambda: session.rest.version > 0)
+    core = plica.Simulation(plica.Scenario(session.draft.table))._core
+    profile = session.rest._built[3][name]
+    assert np.array_equal(profile, core.strength("cortex.apical").astype("f4"))
+    assert profile.max() > 0.9 and 0 < profile[profile > 0].min() < 0.5, "a Gaussian over the mesoderm"
+    run = run_to(session, session.order("start", {})["run"], 60)
+    number = session.order("act", {"run": run.number, "at_s": 30, "kind": "cut", "cells": [20, 21]})["run"]
+    cut = run_to(session, number, 60)
+    end_s = cut.file.frames[-1].time_s
+    shown = cut.file.values(len(cut.file.frames) - 1, name)
+    expected = profile * np.float32(end_s / 540)  # its program rises from 0 to 540 s
+    expected[[20, 21]] = 0
+    assert np.allclose(shown, expected, atol=1e-6)
+    head = cut.frame_message({"slot": 0, "field": name, "at_s": None, "rows": 0})[-1]
+    assert b'"range"' in head and name in FrameFile(cut.directory / "frames.bin").cell_fields
+
+
 def test_painting_makes_regions_of_ids_and_can_be_undone(session):
     session.order("paint", {"region": "stripe", "ids": [5, 3, 3, 4]})
     assert session.draft.table["region"]["stripe"]["ids"] == [3, 4, 5]

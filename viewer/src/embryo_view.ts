@@ -95,7 +95,12 @@ export class EmbryoViews {
 
   /** Image of all pictures as on the page, above the legend, at twice the screen resolution. */
   async picture(): Promise<Blob> {
-    const finer = 2;
+    const canvas = await this.drawing(2);
+    return new Promise((resolve) => canvas.toBlob((blob) => resolve(blob!), "image/png"));
+  }
+
+  /** Drawing of all pictures as on the page, above the legend; `finer`: its resolution / that of the screen. */
+  async drawing(finer: number): Promise<HTMLCanvasElement> {
     const shown = this.views.filter((view) => view.isShown);
     await Promise.all(shown.map(({ run }) => run.load()));
     const { clientWidth: width, clientHeight: height } = this.holder;
@@ -122,7 +127,7 @@ export class EmbryoViews {
     }
     context.translate(0, height);
     drawLegend(context, width, this.state.now.field, this.page);
-    return new Promise((resolve) => canvas.toBlob((blob) => resolve(blob!), "image/png"));
+    return canvas;
   }
 
   private titleOf(view: RunView): string {

@@ -6,7 +6,7 @@ import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "no
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { isFirefox, launch } from "./browser.mjs";
+import { launch, saved } from "./browser.mjs";
 import { python, serve } from "./studio_server.mjs";
 
 const plica = process.env.PLICA ?? "plica";
@@ -48,6 +48,16 @@ async function open({ dark = false } = {}) {
       !allowed.test(text)), []);
   };
   return { page, done };
+}
+
+// The first test begins with the choice of a scenario; each test may be the first.
+async function openedScenario(given) {
+  const opened = await open(given);
+  const { page } = opened;
+  await page.waitForSelector("body[data-ready], dialog[open] .file");
+  if (await page.isVisible("dialog[open]")) await page.click('.file[data-source="short.toml"]');
+  await page.waitForSelector("body[data-ready]");
+  return opened;
 }
 
 const shownRun = (page) => page.evaluate(() => Number(document.querySelector("input[name=run]:checked").value));
@@ -145,6 +155,11 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.click("#undo");
   await page.waitForFunction(() => !document.querySelector("#text").textContent.includes("cortex.new"));
 
+  // The profile of a law as colour.
+  await page.selectOption("#field", "strength of cortex.apical");
+  await page.waitForFunction(() => document.querySelector("#legend").width > 0);
+  await page.selectOption("#field", "region");
+
   // Times are typed in minutes.
   await page.click('[data-table="time"] > summary');
   assert.equal(await page.inputValue('[data-key="time.end_s"]'), "4");
@@ -186,6 +201,20 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.click("#go");
   await ended(page, 3);
 
+  // The movie's last picture is that of the page.
+  for (const kind of ["picture", "movie"]) {
+    const { name, bytes } = await saved(page, `#save-${kind}`);
+    writeFileSync(join(folder, name), bytes);
+  }
+  const [frames, apart] = JSON.parse(execFileSync(python, ["-c", `if True:
+    import json
+    from PIL import Image, ImageChops, ImageStat
+    movie, page = Image.open("plica.gif"), Image.open("plica.png").convert("RGB")
+    movie.seek(movie.n_frames - 1)
+    apart = ImageChops.difference(movie.convert("RGB"), page.resize(movie.size, Image.Resampling.BOX))
+    print(json.dumps([movie.n_frames, max(ImageStat.Stat(apart).mean)]))`], { cwd: folder }));
+  assert.ok(frames > 5 && apart < 6, `${frames} pictures, ${apart} of 255 apart`);
+
   // What is taken away repeats the run, digit by digit.
   const text = await page.evaluate(async () =>
     (await fetch(document.querySelector('li[data-run="3"] a[download="scenario.toml"]').href)).text());
@@ -204,8 +233,7 @@ test("a tissue of mine is shown with remarks before it is used", options, async 
     ...at.slice(1).flatMap((_, y) => at.slice(1).map((_, x) => 5 * y + x).map((i) => `4 ${i} ${i + 1} ${i + 6} ${i + 5}`))]
     .join("\n"));
   writeFileSync(join(folder, "broken.off"), "OFF\n1 0 0\n0 0 0\n");
-  const { page, done } = await open();
-  await page.waitForSelector("body[data-ready]");
+  const { page, done } = await openedScenario();
   const title = await page.textContent("#title");
   await page.click("#open");
   await page.click('.file[data-source="broken.off"]');
@@ -231,8 +259,7 @@ test("a tissue of mine is shown with remarks before it is used", options, async 
 });
 
 test("the server is killed and started again: the page goes on", options, async () => {
-  const { page, done } = await open({ dark: true });
-  await page.waitForSelector("body[data-ready]");
+  const { page, done } = await openedScenario({ dark: true });
   await page.click("#show-0");
   await page.click("#go");
   await page.waitForFunction(() => document.querySelector("input[name=run]:checked").value !== "0");
@@ -248,8 +275,7 @@ test("the server is killed and started again: the page goes on", options, async 
 });
 
 test(`${monkeyActs} random acts leave no error`, options, async () => {
-  const { page, done } = await open();
-  await page.waitForSelector("body[data-ready]");
+  const { page, done } = await openedScenario();
   let seed = 7;
   const random = (count) => {
     seed = (seed * 1103515245 + 12345) % 2147483648;

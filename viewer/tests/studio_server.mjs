@@ -3,10 +3,10 @@ import { spawn } from "node:child_process";
 
 export const python = process.env.STUDIO_PYTHON;
 
-/** Serve a folder; `stop(signal)` ends the server and waits for its end. */
-export async function serve(folder, ...options) {
-  const server = spawn(python, ["-m", "plica.studio", folder, "--no-browser", "--threads", "1", ...options],
-    { stdio: ["ignore", "pipe", "inherit"] });
+/** Serve a folder, or a scenario in it; `stop(signal)` ends the server and waits for its end. */
+export async function serve(folder, scenario = ".") {
+  const server = spawn(python, ["-m", "plica.studio", scenario, "--no-browser", "--threads", "1"],
+    { cwd: folder, stdio: ["ignore", "pipe", "inherit"] });
   const ended = new Promise((done) => server.once("exit", done));
   const url = await new Promise((found, fail) => {
     let text = "";

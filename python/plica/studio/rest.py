@@ -5,13 +5,12 @@ import threading
 from collections.abc import Callable
 from typing import Optional
 
-from .. import _core
 from ..errors import PlicaError
 from ..scenario import Scenario
 from ..simulation import Simulation
 from .draft import Table
 from .messages import packed
-from .shapes import Floats, shape_message, values_now
+from .shapes import Floats, ends_of_colours, shape_message, strengths_now, values_now
 
 
 class Rest:
@@ -52,7 +51,8 @@ class Rest:
             try:
                 sim = Simulation(make(), threads=1)
                 shape = shape_message(sim, f"{self.number}/{version}")
-                built = (version, shape, sim.positions.astype("f4"), values_now(sim))
+                strengths = {name: array.astype("f4") for name, array in strengths_now(sim, at_rest=True).items()}
+                built = (version, shape, sim.positions.astype("f4"), values_now(sim) | strengths)
                 advice = list(sim._core.advice)
             except (PlicaError, ValueError, OSError, MemoryError) as error:
                 problem = str(error) or "out of memory; use fewer cells"
@@ -74,5 +74,5 @@ class Rest:
         arrays = {"positions": positions}
         if name in values:
             arrays["values"] = values[name]
-            head["range"] = _core.colour_range(name, float(values[name].min()), float(values[name].max()))
+            head["range"] = ends_of_colours(name, float(values[name].min()), float(values[name].max()))
         return [shape, packed(head, arrays)]

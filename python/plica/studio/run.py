@@ -22,7 +22,7 @@ from ..simulation import Simulation
 from .acts import running_acts
 from .frames import Frame, FrameFile
 from .messages import packed
-from .shapes import shape_message, values_now
+from .shapes import ends_of_colours, shape_message, values_now
 
 FRAME_APART_S = 0.02  # of wall time, so that quick runs are not slowed down
 MOST_KEPT = 64
@@ -329,7 +329,7 @@ class StudioRun:
         if field in self.file.ends:
             arrays["values"] = self.file.values(i, field)
             ends = [run.file.ends[field] for run in (self, shown) if field in run.file.ends]
-            head["range"] = _core.colour_range(field, min(low for low, _ in ends), max(high for _, high in ends))
+            head["range"] = ends_of_colours(field, min(low for low, _ in ends), max(high for _, high in ends))
         first = int(want.get("rows", 0))
         head |= {"columns": shown.columns, "first_row": first, "rows": shown.rows[first:]}
         known = shape in want.get("shapes", [])

@@ -14,7 +14,13 @@ from .messages import packed
 FACES = np.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]])
 NODE_FIELDS = ("displacement", "speed")
 CELL_FIELDS = ("area-ratio", "pressure", "volume", "contraction", "generation", "self-intersections")
+STRENGTH = "strength of "  # begins the names of fields that laws have
 Floats = NDArray[np.float32]
+
+
+def ends_of_colours(name: str, low: float, high: float) -> tuple[float, float]:
+    """Return the ends of the colours of a field."""
+    return _core.colour_range("strength" if name.startswith(STRENGTH) else name, low, high)
 
 
 def surface(hexahedra: NDArray[np.int32], cell_of: NDArray[np.int32]) -> dict[str, NDArray[np.uint32]]:
@@ -54,6 +60,7 @@ def shape_message(sim: Simulation, name: str) -> bytes:
     reach = np.abs(rest).max(axis=0) * 0.15
     return packed({
         "kind": "shape", "shape": name, "nodes": len(rest), "cells": len(sim.pressures), "regions": list(regions),
+        "strengths": [STRENGTH + law for law in sim._core.laws(True)],
         "own_fields": {k: _core.colour_range("volume", float(v.min()), float(v.max())) for k, v in own.items()},
         "box": {"low": (rest.min(axis=0) - reach).tolist(), "high": (rest.max(axis=0) + reach).tolist()},
         "shell": shell and {"half_axis_um": shell[0], "radius_um": shell[1]},
@@ -73,4 +80,11 @@ def values_now(sim: Simulation) -> dict[str, Floats]:
               "speed": np.linalg.norm(sim.velocities, axis=1)}
     for name in CELL_FIELDS:
         values[name] = np.nan_to_num(data[fields[name]["array"]])
-    return {name: array.astype("f4") for name, array in values.items()}
+    return {name: array.astype("f4") for name, array in (values | strengths_now(sim)).items()}
+
+
+def strengths_now(sim: Simulation, at_rest: bool = False) -> dict[str, NDArray[np.float64]]:
+    """Return the strength of each active law by cell: profile, variation and, in a run, activity."""
+    core = sim._core
+    return {f"{STRENGTH}{law}": np.nan_to_num(core.strength(law) * (1.0 if at_rest else core.activity(law)))
+            for law in core.laws(True)}

@@ -12,9 +12,9 @@ import { followTheme } from "../theme";
 import { CandidatePanel, candidateRun } from "./candidate";
 import { type Candidate, Connection, type DraftState, Problem, type RunsState, type Table } from "./connection";
 import { Forms } from "./forms";
+import { Gif } from "./gif";
 import { LiveRun, LiveTopology } from "./live_run";
 import { type Frame, type Message, rangeOf, type Shape } from "./messages";
-import { movieOf } from "./movie";
 import { Painting, type Stroke } from "./painting";
 import { type Chosen, RunsPanel } from "./runs_panel";
 import { Start } from "./start";
@@ -23,6 +23,8 @@ import { ToolsBar } from "./tools_bar";
 
 const chartsApart = 700; // ms
 const mostCellsWithEdges = 5000;
+const movieLength = 8000; // ms
+const mostPictures = 120; // of a movie
 const difference: Field = {
   name: "difference", label: "distance from the run beside, µm", unit: "", on_nodes: true, scale: "from-zero",
   map: "from_zero", low: 0, high: 1,
@@ -39,6 +41,8 @@ class Studio {
   private readonly shapes = new Map<string, LiveTopology>();
   private readonly wants = [false, false]; // slots to be asked for at the next refresh
   private readonly frameShown = [-1, -1]; // index of the frame shown in each slot
+  private frameCount = 0; // of the run in the first slot
+  private isShown: (() => void) | null = null; // called when every slot shows the frame it waits for
   private at: number | null = null;
   private views: EmbryoViews | null = null;
   private selection = new Set<number>();
@@ -208,6 +212,8 @@ class Studio {
     this.showTime();
     if (head.slot === 0 && this.chosen.beside !== null) this.wants[1] = true;
     document.body.dataset.frame = `${head.run}/${head.index}`;
+    this.frameCount = head.slot === 0 ? head.count : this.frameCount;
+    if (this.frameShown.every((index, slot) => index >= 0 || this.wanted(slot) === null)) this.isShown?.();
   }
 
   private takeTopology(before: LiveTopology | null, topology: LiveTopology): void {
@@ -216,13 +222,23 @@ class Studio {
     if (this.chosen.run === 0) this.forms.fit(shape, topology.regionSizes);
     const own = Object.entries(shape.own_fields).map(([name, range]): Field => (
       { name, label: name, unit: "", on_nodes: false, scale: "from-zero", map: "from_zero", ...rangeOf(range) }));
-    this.page.fields = [...this.known, ...own, difference];
+    const strengths = shape.strengths.map((name): Field => (
+      { name, label: name, unit: "", on_nodes: false, scale: "from-zero", map: "from_zero", low: 0, high: 1 }));
+    const names = this.page.fields.map(({ name }) => name).join();
+    this.page.fields = [...this.known, ...strengths, ...own, difference];
+    if (before && names !== this.page.fields.map(({ name }) => name).join()) this.showControls();
     if (before?.cells !== topology.cells) this.selection = new Set();
     if (before && hasSameSize(before, topology)) return; // at most, cells have divided
     this.page.views = Object.entries(shape.views).map(([name, view]) => ({ name, title: name, label: "", ...view }));
     this.page.view_cut_um = 0.01;
     this.state.set({ view: this.page.views[0], cut: null, edges: topology.cells <= mostCellsWithEdges });
     this.views?.remeasure();
+    this.showControls();
+  }
+
+  private showControls(): void {
+    if (!this.page.fields.some(({ name }) => name === this.state.now.field.name))
+      this.state.set({ field: this.page.fields.find(({ name }) => name === "region")! });
     byId("controls").replaceChildren(...new LookControls([this.runs[0]], this.page, this.state, () =>
       this.views?.sight() ?? [1, 1, 1]).all());
   }
@@ -440,19 +456,38 @@ class Studio {
     });
   }
 
+  /** Save a GIF of the shown run as it is replayed, with time, scale and legend. */
   private async saveMovie(): Promise<void> {
     const run = this.panel.run(this.chosen.run);
     if (!run || !this.views) return this.tell("A movie shows a run; choose one under Runs.");
-    byId("save-movie").textContent = "Recording…";
-    try {
-      this.time.play();
-      const { name, content } = await movieOf(byId("canvases"), () => this.time.isPlaying);
-      save(name, content);
-    } catch (error) {
-      this.tell(`The movie was not saved: ${error instanceof Error ? error.message : error}`);
-    } finally {
-      byId("save-movie").textContent = "Movie";
+    const button = byId("save-movie") as HTMLButtonElement;
+    button.disabled = true;
+    const pictureAt = async (part: number) => {
+      await this.shownAt(part * run.time_s);
+      const canvas = await this.views!.drawing(1);
+      return canvas.getContext("2d")!.getImageData(0, 0, canvas.width, canvas.height);
+    };
+    await this.shownAt(null);
+    const last = Math.max(Math.min(this.frameCount, mostPictures) - 1, 1);
+    const gif = new Gif([await pictureAt(0), await pictureAt(0.5), await pictureAt(1)]);
+    const shownFor = Math.max(10 * Math.round(movieLength / last / 10), 40);
+    for (let i = 0; i <= last && this.chosen.run === run.number; ++i) {
+      gif.add(await pictureAt(i / last), i === last ? 2000 : shownFor);
+      button.textContent = `Movie ${Math.round((100 * i) / last)} %`;
     }
+    save("plica.gif", gif.end());
+    this.at = null;
+    this.ask();
+    button.textContent = "Movie";
+    button.disabled = false;
+  }
+
+  /** Look at a time, null: the newest frame, and wait until it is shown in every slot. */
+  private shownAt(time: number | null): Promise<void> {
+    this.at = time;
+    this.frameShown.fill(-1);
+    this.wants[0] = true; // the slot beside it follows
+    return new Promise((resolve) => (this.isShown = resolve));
   }
 
   private key(event: KeyboardEvent): void {

@@ -91,8 +91,4 @@ export class TimeBar {
     if (part >= 1) this.playingSince = null;
     this.look(part >= 1 ? null : part * this.state.time_s);
   }
-
-  get isPlaying(): boolean {
-    return this.playingSince !== null;
-  }
 }
