@@ -164,9 +164,7 @@ void restore_momentum(const Model& model, const TissueChange& change, const Vec3
 
 TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned) {
   if (const auto why = why_indivisible(model.tissue)) throw std::logic_error("cells cannot divide: " + *why);
-  // Finished growth is dropped; the last shape and target stay.
-  if (std::optional<Model> now = grown(model, state.time_s)) model = std::move(*now);
-  std::erase_if(model.growths, [&](const Growth& growth) { return growth.end_s <= state.time_s; });
+  settle_growth(model, state.time_s);
 
   const Vec3 momentum_before = momentum(model, state.velocities);
   std::vector<CellCut> cuts;
@@ -190,13 +188,22 @@ TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDiv
       model.growths.push_back(growth);
     }
 
+  follow_change(model, state, change, before);
+  if (!model.masses().empty()) restore_momentum(model, change, momentum_before, state.velocities);
+  return change;
+}
+
+void follow_change(Model& model, State& state, const TissueChange& change, const Vectors& before) {
   divide_constraints(model, state, change);
   divide_laws(model, state, change, before);
   divide_holds(model, change);
   divide_obstacles(model, state, change);
-  if (!model.masses().empty()) restore_momentum(model, change, momentum_before, state.velocities);
   model.revision = ++Model::revisions;
-  return change;
+}
+
+void settle_growth(Model& model, double time_s) {
+  if (std::optional<Model> now = grown(model, time_s)) model = std::move(*now);
+  std::erase_if(model.growths, [&](const Growth& growth) { return growth.end_s <= time_s; });
 }
 
 std::optional<Model> grown(const Model& model, double time_s) {

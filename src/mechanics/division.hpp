@@ -22,6 +22,12 @@ struct PlannedDivision {
 /// half of that of the mother; both then grow (`grown`). std::logic_error if the tissue is indivisible.
 TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned);
 
+/// Let model and state follow a change of their tissue, whose positions the state has; `before`: those before it.
+void follow_change(Model& model, State& state, const TissueChange& change, const Vectors& before);
+
+/// Take the rest shapes and target volumes of growing daughters at this time, and drop growth that has ended.
+void settle_growth(Model& model, double time_s);
+
 /// Return the model with the rest shapes and target volumes that growing daughters have at `time_s`; empty if these are
 /// its own.
 std::optional<Model> grown(const Model& model, double time_s);

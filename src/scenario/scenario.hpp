@@ -190,6 +190,19 @@ struct FollowInput {
   std::optional<double> from, to;
 };
 
+/// Polarity of lateral faces: a factor by the angle between their normal and an axis.
+struct WallDirectionInput {
+  std::string axis;  // along | across; empty: none
+  double strongest = 1, weakest = 1;
+};
+
+/// Fluctuation of the tension of lateral faces.
+struct WallNoiseInput {
+  double spread = 0;                    // 0: none
+  std::optional<double> correlation_s;  // TOML: correlation_s or correlation_min
+  int seed = 1;
+};
+
 struct CortexInput : ActingInput {
   double tension_mN_per_m = 0;
   double saturation_ratio = 0;
@@ -200,6 +213,8 @@ struct CortexInput : ActingInput {
   ProgramInput stiffness_program;
   TriggerInput trigger;
   FollowInput follow;
+  WallDirectionInput direction;
+  WallNoiseInput noise;
 };
 
 enum class EnclosedState { held, compliant, free };
@@ -236,6 +251,14 @@ struct DivisionInput {
   double growth_s = 300;             // TOML: growth_s or growth_min
   double daughter_volume_ratio = 1;
   std::optional<int> max_generation;  // empty: 1 with `when`, no limit with a time
+};
+
+/// Exchange of neighbours: short lateral faces turn by a quarter.
+struct ExchangeInput {
+  std::optional<double> below_um;  // empty: no exchange
+  std::optional<double> new_length_um;
+  double again_after_s = 5;
+  std::string region = "all";
 };
 
 struct TimeInput {
@@ -349,6 +372,7 @@ struct Scenario {
   std::map<std::string, HoldInput> holds;
   std::map<std::string, PressureInput> pressures;
   std::map<std::string, DivisionInput> divisions;
+  ExchangeInput exchange;
   std::map<std::string, AblationInput> ablations;
   std::map<std::string, ExpectInput> expect;  // keys of summary.json, including monitors
 };

@@ -87,12 +87,8 @@ Vec3 shift_of(const Tissue& tissue, VertexId vertex) {
   return tissue.period.cwiseProduct(Vec3(x, y, z));
 }
 
-NodeId node_of(const Tissue& tissue, VertexId vertex, std::size_t level) {
-  return tissue.sheet.vertices[original_of(tissue.sheet, vertex).index()].nodes[level];
-}
-
 Vec3 place_of(const Tissue& tissue, VertexId vertex, std::size_t level, std::span<const Vec3> positions) {
-  return positions[node_of(tissue, vertex, level).index()] + shift_of(tissue, vertex);
+  return positions[column(tissue.sheet, vertex)[level].index()] + shift_of(tissue, vertex);
 }
 
 // Turns one wall after the other in the sheet.
@@ -109,8 +105,7 @@ class Turner {
       if (cell.valid()) polygons.emplace_back(cell, sheet_.cells[cell.index()]);
     std::vector<std::pair<NodeId, Vec3>> places;
     for (const VertexId vertex : {turn.begin, turn.end})
-      for (const NodeId node : sheet_.vertices[original_of(sheet_, vertex).index()].nodes)
-        places.emplace_back(node, positions_[node.index()]);
+      for (const NodeId node : column(sheet_, vertex)) places.emplace_back(node, positions_[node.index()]);
 
     turn_rings(turn);
     move_columns(turn);
@@ -173,7 +168,7 @@ class Turner {
   }
 
   void move_columns(const WallTurn& turn) {
-    const std::size_t levels = sheet_.vertices[original_of(sheet_, turn.begin).index()].nodes.size();
+    const std::size_t levels = column(sheet_, turn.begin).size();
     const auto place = [&](VertexId vertex, std::size_t level) { return place_of(tissue_, vertex, level, positions_); };
     const auto middle = [&](std::size_t level) {
       return Vec3(0.5 * (place(turn.begin, level) + place(turn.end, level)));
@@ -185,8 +180,8 @@ class Turner {
     const Vec3 half = 0.5 * length_um_ * up.normalized().cross(along);  // towards `left`
     for (std::size_t level = 0; level < levels; ++level) {
       const Vec3 at = middle(level);
-      positions_[node_of(tissue_, turn.begin, level).index()] = at + half - shift_of(tissue_, turn.begin);
-      positions_[node_of(tissue_, turn.end, level).index()] = at - half - shift_of(tissue_, turn.end);
+      positions_[column(sheet_, turn.begin)[level].index()] = at + half - shift_of(tissue_, turn.begin);
+      positions_[column(sheet_, turn.end)[level].index()] = at - half - shift_of(tissue_, turn.end);
     }
   }
 
@@ -237,6 +232,10 @@ std::vector<WallTurn> possible_turns(const Sheet& sheet) {
       if (const auto turn = turns.turn(CellId(c), stop)) possible.push_back(*turn);
     }
   return possible;
+}
+
+const std::vector<NodeId>& column(const Sheet& sheet, VertexId vertex) {
+  return sheet.vertices[original_of(sheet, vertex).index()].nodes;
 }
 
 Vec3 wall_vector(const Tissue& tissue, const WallTurn& turn, std::size_t level, std::span<const Vec3> positions) {

@@ -29,6 +29,9 @@ std::optional<std::string> why_unturnable(const Tissue& tissue);
 /// part keep three sides, and do not part where both lie at a rim; those that meet do not touch elsewhere.
 std::vector<WallTurn> possible_turns(const Sheet& sheet);
 
+/// Return the free nodes of a vertex, from base to apex: of its original, if it is an image.
+const std::vector<NodeId>& column(const Sheet& sheet, VertexId vertex);
+
 /// Return the vector from begin to end of a wall on a level: 0 at the base.
 Vec3 wall_vector(const Tissue& tissue, const WallTurn& turn, std::size_t level, std::span<const Vec3> positions);
 

@@ -11,6 +11,7 @@
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/active/shape_activation.hpp"
+#include "mechanics/active/wall_factors.hpp"
 #include "mechanics/kernels/batch_law.hpp"
 #include "tissue/faces.hpp"
 
@@ -28,6 +29,7 @@ struct CortexRule {
   Program program = {};                 // time course of gamma; starts after the delay of the cell
   Program stiffness_program = {};       // time course of k
   ShapeActivationRule activation = {};  // shape-dependent start of both programs, or factor on the tension
+  WallFactorRule walls = {};            // of lateral faces: factors on gamma
 };
 
 /// Cortex law. Cell strengths scale all terms. A lateral face is shared by two cells and takes the mean of their
@@ -48,6 +50,8 @@ class Cortex final : public BatchLaw<Cortex, 4> {
 
   /// Faces keep their reference area, per area in the undeformed tissue, and their strain (stress-free / reference
   /// area), also as parts of a face that was cut. The reference area of a face between daughters is its present one.
+  /// Where cells meet by an exchange, it is the mean of both cells' other lateral faces; if areas relax, such a face
+  /// begins at its stress-free area.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
   /// Reference areas of faces born in divisions depend on positions then.
@@ -87,6 +91,7 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   [[nodiscard]] Response elastic(std::size_t face, double area, const Step& step, double b, bool with_energy) const;
   [[nodiscard]] Response crowded(std::size_t face, double area, bool with_energy) const;
   [[nodiscard]] double stiffening_of(std::size_t face, const Step& step) const;
+  void take_factors(const Step& step) const;
   struct FaceTensions {                    // all faces at the end of a step
     std::vector<double> tensions, slopes;  // faces, filled up to whole batches
     Vectors positions;                     // what they depend on
@@ -123,7 +128,15 @@ class Cortex final : public BatchLaw<Cortex, 4> {
   std::vector<double> strengths_;   // faces
   ShapeActivation activation_;
   std::vector<FaceBatch> batches_;
+  std::vector<std::uint64_t> pairs_;  // faces; of their cells, if walls have noise
   mutable FaceTensions kept_;  // of the last iterate, for all products of its linear system; one thread at a time
+  // Factors of lateral faces (WallFactorRule), by the positions at the beginning of a step and the time at its end.
+  struct Factors {
+    Vectors positions;
+    double time_s = -1;
+    std::vector<double> of_face;
+  };
+  mutable Factors factors_;
 };
 
 }  // namespace plica
