@@ -126,6 +126,39 @@ def division():
     save(figure, "theory/division.svg")
 
 
+def exchange():
+    figure, axes = canvas(760, 330)
+    for number, (title, half) in enumerate((("short and shrinking", (0, 14)), ("turned by a quarter", (24, 0)),
+                                            ("lengthened by forces", (46, 0)))):
+        middle = np.array((125 + 255 * number, 170))
+        # Columns, then the far corners of left, right, lower and upper cell.
+        begin, end = middle - half, middle + half
+        if number:
+            begin, end = end, begin
+        corners = {name: middle + at for name, at in {"nw": (-62, 78), "ne": (62, 78), "sw": (-62, -78), "se": (62, -78)}.items()}
+        left, right = (begin, end) if number == 0 else (min(begin, end, key=lambda x: x[0]), max(begin, end, key=lambda x: x[0]))
+        sides = [middle + (-110, 50), middle + (-110, -50)], [middle + (110, -50), middle + (110, 50)]
+        if number == 0:
+            polygons = ([corners["nw"], *sides[0], corners["sw"], begin, end], [corners["se"], *sides[1], corners["ne"], end, begin],
+                        [corners["sw"], middle + (-35, -118), middle + (35, -118), corners["se"], begin],
+                        [corners["ne"], middle + (35, 118), middle + (-35, 118), corners["nw"], end])
+        else:
+            polygons = ([corners["nw"], *sides[0], corners["sw"], left], [corners["se"], *sides[1], corners["ne"], right],
+                        [corners["sw"], middle + (-35, -118), middle + (35, -118), corners["se"], right, left],
+                        [corners["ne"], middle + (35, 118), middle + (-35, 118), corners["nw"], left, right])
+        for points, fill in zip(polygons, ("#f3c9bd", "#f3c9bd", CELL, CELL)):
+            polygon(axes, np.array(points), fill=fill)
+        line(axes, begin, end, color=LATERAL, width=5)
+        dots(axes, [begin, end], FORCE, 11)
+        label(axes, (middle[0], 316), title)
+        for name, at in {"1": (-75, 0), "2": (75, 0), "3": (0, -85), "4": (0, 85)}.items():
+            label(axes, middle + at, name)
+        if number == 2:
+            for at, way in ((left, -1), (right, 1)):
+                arrow(axes, at, at + (24 * way, 0))
+    save(figure, "theory/exchange.svg")
+
+
 SQUARE = np.array([(-55, -75), (55, -75), (55, 75), (-55, 75)])
 
 
@@ -632,7 +665,7 @@ def energy():
     save(figure, "theory/energy.svg")
 
 
-LAWS = (contraction, cortex, division, growth, corotational, neo_hookean, shape_memory, corner_barrier, cell_volume, vitelline, shell_drag,
+LAWS = (contraction, cortex, division, exchange, growth, corotational, neo_hookean, shape_memory, corner_barrier, cell_volume, vitelline, shell_drag,
         coulomb, self_contact, enclosed_volume, surroundings, foundation, ties, mirror, periodic, signals, energy)
 
 if __name__ == "__main__":

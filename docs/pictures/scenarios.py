@@ -229,6 +229,23 @@ def growing_disc():
     write(figure, "scenarios/growing-disc.png", colours=64)
 
 
+def convergent_extension():
+    """A sheet that narrows and lengthens, from above at four times; 16 cells of a square are marked."""
+    run = run_of("convergent-extension")
+    figure, axes = canvas(WIDTH, 560)
+    first = run.frames[0]
+    centres = np.array([first.polygons("apical").points[face].mean(axis=0) for face in first.polygons("apical").faces])
+    marked = np.all(np.abs(centres[:, :2]) < (11, 11), axis=1)
+    scale = 3.6
+    for (x, y), time in zip(((110, 290), (345, 290), (725, 400), (725, 170)), (0, 10, 20, run.frames[-1].time_min)):
+        frame = run.frames.at(time)
+        colours = np.where(marked[:, None], to_rgb(DAUGHTER), to_rgb("#dfe7ee"))
+        outside(axes, frame, colours, ABOVE, (x, y), scale, width=0.8)
+        label(axes, (x, y + 155 if x < 500 else y + 105), minutes(frame), size=LETTERS, weight="bold")
+    bar(axes, 30, 34, 20, scale)
+    write(figure, "scenarios/convergent-extension.png", colours=64)
+
+
 def division_demo():
     """A row of three cells, of which one divides, from the side."""
     run = run_of("division-demo")
@@ -283,6 +300,7 @@ PICTURES = {
     "furrow-slice": partial(sections, "furrow-slice", (0, 9, 12, 15, 20), 50, 0.98),
     "wing-disc": wing_disc,
     "growing-disc": growing_disc,
+    "convergent-extension": convergent_extension,
     "division-demo": division_demo,
     "ellipsoid": ellipsoid,
 }

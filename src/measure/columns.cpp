@@ -14,7 +14,7 @@
 namespace plica {
 
 MeasureSet run_set(), fold_set(), furrow_set(), contact_set(), closing_set(), lumen_set(), enclosed_set(), shell_set(),
-    perivitelline_set(), flanks_set(), bending_set(), projection_set(), shape_set();
+    perivitelline_set(), flanks_set(), bending_set(), projection_set(), shape_set(), neighbours_set();
 
 namespace {
 
@@ -75,7 +75,7 @@ std::optional<double> summary_value(const Column& column, std::span<const Observ
 std::span<const MeasureSet> measure_sets() {
   static const std::vector<MeasureSet> sets = {
       run_set(),   fold_set(),          furrow_set(), contact_set(), closing_set(),    lumen_set(), enclosed_set(),
-      shell_set(), perivitelline_set(), flanks_set(), bending_set(), projection_set(), shape_set()};
+      shell_set(), perivitelline_set(), flanks_set(), bending_set(), projection_set(), shape_set(), neighbours_set()};
   return sets;
 }
 

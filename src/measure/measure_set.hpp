@@ -14,9 +14,10 @@ namespace plica {
 /// Tissue to be measured, with what the scenario describes of it.
 struct Subject {
   const Model& model;
-  FurrowSites furrow = {};  // without cells if nothing contracts
-  bool is_embryo = false;   // has a ventral side (embryo.axes)
-  bool projects = false;    // volumes are projected
+  FurrowSites furrow = {};                       // without cells if nothing contracts
+  bool is_embryo = false;                        // has a ventral side (embryo.axes)
+  bool projects = false;                         // volumes are projected
+  std::optional<double> exchange_below_um = {};  // of [exchange], if any
 };
 
 inline bool always(const Subject&) { return true; }

@@ -77,8 +77,8 @@ std::vector<Column> columns_of_every_run() {
        "on their error ([energy](../theory/energy.md)). None without active work.",
        energy_imbalance},
       costly(count({"short_edges", largest,
-                    "Apical cell edges shorter than 10 % of their reference length; a tissue would exchange neighbours "
-                    "(T1) there, plica does not.",
+                    "Apical cell edges shorter than 10 % of their reference length; cells exchange neighbours there "
+                    "only with `[exchange]`.",
                     of(short_edges)})),
       {"max_displacement_um", last, "Largest distance of a node from its reference position.", of(max_displacement)},
       {"mean_height_um", last, "Mean height of all cells.", of(mean_height)},

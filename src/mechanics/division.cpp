@@ -164,9 +164,7 @@ void restore_momentum(const Model& model, const TissueChange& change, const Vec3
 
 TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned) {
   if (const auto why = why_indivisible(model.tissue)) throw std::logic_error("cells cannot divide: " + *why);
-  // Finished growth is dropped; the last shape and target stay.
-  if (std::optional<Model> now = grown(model, model, state.internals, state.time_s)) model = std::move(*now);
-  std::erase_if(model.growths, [&](const Growth& growth) { return growth.end_s <= state.time_s; });
+  settle_growth(model, state);
 
   const Vec3 momentum_before = momentum(model, state.velocities);
   std::vector<CellCut> cuts;
@@ -177,7 +175,6 @@ TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDiv
     std::erase_if(model.growths, [&](const Growth& growth) { return growth.cell == plan.cut.cell; });
   }
 
-  const std::vector<double> volumes_before = model.volumes.volumes(state.positions);
   TissueChange change = divide(model.tissue, cuts, state.time_s, state.positions);
   const Vectors before = std::move(state.positions);
   state.positions = with_new_nodes(model.tissue, change, before);
@@ -191,15 +188,25 @@ TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDiv
       model.growths.push_back(growth);
     }
 
+  follow_change(model, state, change, before);
+  if (!model.masses().empty()) restore_momentum(model, change, momentum_before, state.velocities);
+  return change;
+}
+
+void follow_change(Model& model, State& state, const TissueChange& change, const Vectors& before) {
+  const std::vector<double> volumes_before = model.volumes.volumes(before);
   divide_constraints(model, state, change);
   divide_laws(model, state, change, before);
   model.signals = model.signals.after(model.tissue, change);
   state.signals = inherited_signals(change, volumes_before, model.volumes.volumes(state.positions), state.signals);
   divide_holds(model, change);
   divide_obstacles(model, state, change);
-  if (!model.masses().empty()) restore_momentum(model, change, momentum_before, state.velocities);
   model.revision = ++Model::revisions;
-  return change;
+}
+
+void settle_growth(Model& model, const State& state) {
+  if (std::optional<Model> now = grown(model, model, state.internals, state.time_s)) model = std::move(*now);
+  std::erase_if(model.growths, [&](const Growth& growth) { return growth.end_s <= state.time_s; });
 }
 
 }  // namespace plica

@@ -21,4 +21,11 @@ struct PlannedDivision {
 /// half of that of the mother; both then grow (`grown`). std::logic_error if the tissue is indivisible.
 TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDivision> planned);
 
+/// Let model and state follow a change of their tissue, whose positions the state has; `before`: those before it.
+void follow_change(Model& model, State& state, const TissueChange& change, const Vectors& before);
+
+/// Take the rest shapes, target volumes and rest areas of growing cells at the time of the state, and drop growth that
+/// has ended. A change of the tissue must follow, from which laws count growth again.
+void settle_growth(Model& model, const State& state);
+
 }  // namespace plica

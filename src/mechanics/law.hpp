@@ -190,6 +190,13 @@ class Law {
     return {internal.begin(), internal.end()};
   }
 
+  /// Return the mean left Cauchy-Green tensor of the elastic strain in these elements; none for laws without.
+  [[nodiscard]] virtual std::optional<Mat3> elastic_stretch(std::span<const double> /*internal*/,
+                                                            std::span<const Vec3> /*positions*/,
+                                                            std::span<const ElementId> /*elements*/) const {
+    return std::nullopt;
+  }
+
   /// Return the data that past divisions left in the law: numbers that the law of the initial tissue, the origins of
   /// cells and the present tissue do not determine.
   [[nodiscard]] virtual std::vector<double> past() const { return {}; }

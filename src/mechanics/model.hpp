@@ -96,6 +96,22 @@ void for_held_constraints(const Model& model, const Body& body) {
   }
 }
 
+/// Exchanges of neighbours so far.
+struct Exchanges {
+  struct Turned {
+    NodeId begin, end;  // basal; free
+    double time_s = 0;
+    static auto parts(auto& one) { return std::tie(one.begin, one.end, one.time_s); }
+  };
+  double until_s = -1;         // those due until then are done
+  int count = 0;               // walls that have turned
+  double energy = 0;           // nN um: change of energy at these events (mechanics/exchange.hpp)
+  double shear = 0;            // of the tissue, with and without exchanges (measure/neighbours.hpp)
+  std::vector<Turned> recent;  // walls that must not turn back yet
+
+  static auto parts(auto& all) { return std::tie(all.until_s, all.count, all.energy, all.shear, all.recent); }
+};
+
 /// State of the body. RunMemory holds what a run also needs to continue bitwise identically.
 struct State {
   double time_s = 0;
@@ -107,6 +123,7 @@ struct State {
   std::vector<std::vector<double>> internals;  // laws: internal states (Law::next_internal)
   Signals::Values signals;                     // concentrations; cells, by signal of the model
   double divided_until_s = -1;                 // divisions due until then are done
+  Exchanges exchanges;
 
   // Recent rates of change (record_motion), from which the end of the next step is predicted. Empty if unknown: at the
   // start and after a division.

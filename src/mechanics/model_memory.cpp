@@ -17,9 +17,9 @@ void require(bool fits) {
 
 // Bounds the size of the mesh before it is made: a sheet has fewer elements than nodes.
 Tissue restored(const Tissue& initial, const ModelMemory& memory, const TissueChange& change, std::size_t nodes) {
-  require(!why_indivisible(initial) && memory.rest_positions.size() >= initial.free_node_count());
+  require(!why_unchangeable(initial) && memory.rest_positions.size() >= initial.free_node_count());
   require(memory.sheet.cells.size() == change.origin.size() &&
-          is_consistent(memory.sheet, memory.rest_positions.size()));
+          is_consistent(memory.sheet, memory.rest_positions.size(), initial.is_periodic()));
   Tissue tissue = initial;
   tissue.sheet = memory.sheet;
   tissue.sheet.connect();

@@ -129,7 +129,7 @@ void Recorder::cells_divided(const TissueChange& change) {
       for (const LineageColumn& column : lineage_columns()) values.emplace_back(column.values(lineage));
       append(lineage_csv, csv_row(values));
     }
-  save_frame();
+  if (!change.daughters.empty()) save_frame();
 }
 
 nlohmann::ordered_json Recorder::finish() {

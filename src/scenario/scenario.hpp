@@ -195,6 +195,19 @@ struct FollowInput : ActivationInput {
   std::optional<double> from, to;
 };
 
+/// Polarity of lateral faces: a factor by the angle between their normal and an axis.
+struct WallDirectionInput {
+  std::string axis;  // along | across; empty: none
+  double strongest = 1, weakest = 1;
+};
+
+/// Fluctuation of the tension of lateral faces.
+struct WallNoiseInput {
+  double spread = 0;                    // 0: none
+  std::optional<double> correlation_s;  // TOML: correlation_s or correlation_min
+  int seed = 1;
+};
+
 struct CortexInput : ActingInput {
   double tension_mN_per_m = 0;
   double saturation_ratio = 0;
@@ -205,6 +218,8 @@ struct CortexInput : ActingInput {
   ProgramInput stiffness_program;
   TriggerInput trigger;
   FollowInput follow;
+  WallDirectionInput direction;
+  WallNoiseInput noise;
 };
 
 struct SignalSourceInput {
@@ -268,6 +283,14 @@ struct GrowthInput : ActingInput {
   std::optional<double> in_plane;                 // empty: isotropic
   std::string axis;                               // along | across; empty: none
   std::optional<double> axis_ratio;
+};
+
+/// Exchange of neighbours: short lateral faces turn by a quarter.
+struct ExchangeInput {
+  std::optional<double> below_um;  // empty: no exchange
+  std::optional<double> new_length_um;
+  double again_after_s = 5;
+  std::string region = "all";
 };
 
 struct TimeInput {
@@ -392,6 +415,7 @@ struct Scenario {
   std::map<std::string, FoundationInput> foundations;
   std::map<std::string, DivisionInput> divisions;
   std::map<std::string, GrowthInput> growths;
+  ExchangeInput exchange;
   std::map<std::string, AblationInput> ablations;
   std::map<std::string, ExpectInput> expect;  // keys of summary.json, including monitors
 };

@@ -53,6 +53,14 @@ void take_pulses(const PulseInput& pulse, RunControls& controls) {
   controls.program_points_s.push_back(controls.end_s);
 }
 
+/// Resolve the fluctuations of walls, likewise.
+void take_noise(const WallNoiseInput& noise, RunControls& controls) {
+  if (!(noise.spread > 0)) return;
+  controls.max_step_s = std::min(controls.max_step_s, *noise.correlation_s / 4);
+  controls.first_step_s = std::min(controls.first_step_s, controls.max_step_s);
+  controls.program_points_s.push_back(controls.end_s);
+}
+
 // First multiple of `period` that exceeds `time` by more than `apart`.
 double next_multiple(double time, double period, double apart) {
   return (std::floor((time + apart) / period + 1e-9) + 1) * period;
@@ -87,10 +95,13 @@ RunControls make_controls(const Scenario& scenario) {
   controls.stop_at_equilibrium = scenario.stop.at_equilibrium && !all_at_once;
   controls.frame_every_s = scenario.output.frame_every_s;
   for (const Acting& acting : acting_tables(scenario)) take_pulses(acting.input.pulse, controls);
+  for (const auto& [name, cortex] : scenario.cortices) take_noise(cortex.noise, controls);
   for (const auto& [name, input] : scenario.divisions) {
     controls.divisions.push_back(make_division_rule(input));
     if (input.at_s) controls.program_points_s.push_back(*input.at_s);
   }
+  if (const ExchangeInput& input = scenario.exchange; input.below_um)
+    controls.exchange = {input.region, *input.below_um, *input.new_length_um, input.again_after_s};
   return controls;
 }
 

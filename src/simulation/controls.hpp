@@ -11,6 +11,7 @@
 #include "mechanics/model.hpp"
 #include "scenario/scenario.hpp"
 #include "simulation/division_rules.hpp"
+#include "simulation/exchange_rules.hpp"
 #include "solver/make_stepper.hpp"
 
 namespace plica {
@@ -28,6 +29,7 @@ struct RunControls {
   std::vector<double> program_points_s;  // adaptive steps end on them; equilibrium counts only after the last
   std::vector<double> program_jumps_s;   // jumps of forces: fixed steps end on them, too
   std::vector<DivisionRule> divisions;   // their times are program points
+  std::optional<ExchangeRule> exchange;
 };
 
 /// Controls of a scenario. The simulation adds the points of the activity time courses of its laws.

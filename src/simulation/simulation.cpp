@@ -14,6 +14,7 @@
 #include "core/errors.hpp"
 #include "core/names.hpp"
 #include "measure/cell_columns.hpp"
+#include "measure/neighbours.hpp"
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
@@ -247,18 +248,29 @@ void Simulation::divide(const std::vector<PlannedDivision>& due) {
   const double now_s = now_.state.divided_until_s = now_.state.time_s;
   if (due.empty()) return;
   now_.divisions += static_cast<int>(due.size());
-  now_.equilibrium_time_s.reset();  // it counts only after the last division
   const TissueChange change = divide_cells(*model_, now_.state, due);
-  grown_.reset();
-  now_.changes = std::make_shared<const ModelMemory>(
-      memory_of(*model_, now_.changes ? inherited(change, now_.changes->origin) : change.origin));
   std::erase_if(now_.growth_ends_s, [&](double end_s) { return has_come(end_s, now_s); });
   for (const PlannedDivision& one : due)
     for (auto* times_s : {&now_.growth_ends_s, &controls_.program_points_s}) times_s->push_back(now_s + one.growth_s);
+  step_length_ = StepLength(controls_);
+  adopt(change);
+}
+
+// Turn short walls. Motion goes on, and so do steps.
+void Simulation::exchange() {
+  if (!controls_.exchange || status() != RunStatus::under_way) return;
+  if (const auto outcome = make_exchanges(*model_, now_.state, *controls_.exchange)) adopt(outcome->change);
+}
+
+// Follow a change of the model and the state.
+void Simulation::adopt(const TissueChange& change) {
+  now_.equilibrium_time_s.reset();  // it counts only after the last change
+  grown_.reset();
+  now_.changes = std::make_shared<const ModelMemory>(
+      memory_of(*model_, now_.changes ? inherited(change, now_.changes->origin) : change.origin));
   observer_.follow_division(model_->tissue, change);
   follow(change, now_.outside_arrays);
   renew_stepper();
-  step_length_ = StepLength(controls_);
   for (SimulationListener* listener : listeners_) listener->cells_divided(change);
 }
 
@@ -303,7 +315,10 @@ RunStatus Simulation::run_until(double time_s) {
 
 bool Simulation::step(double until_s) {
   if (has_come(until_s, now_.state.time_s)) return false;
-  if (!has_begun_) divide(due_divisions(solved(), now_.state, controls_.divisions));
+  if (!has_begun_) {
+    divide(due_divisions(solved(), now_.state, controls_.divisions));
+    exchange();
+  }
   has_begun_ = true;
   if (status() != RunStatus::under_way) return false;
 
@@ -315,6 +330,8 @@ bool Simulation::step(double until_s) {
   now_.computing_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!report) return false;
 
+  if (controls_.exchange)
+    now_.state.exchanges.shear += shear_between(solved().tissue, before.positions, now_.state.positions);
   const State& state = now_.state;
   const double speed = max_speed(state);
   const std::vector<PlannedDivision> due = due_divisions(solved(), state, controls_.divisions);
@@ -342,6 +359,7 @@ bool Simulation::step(double until_s) {
     forget_factor();
   for (SimulationListener* listener : listeners_) listener->step_accepted(step, now_.measures);
   divide(due);
+  exchange();
   return true;
 }
 

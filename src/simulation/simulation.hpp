@@ -27,10 +27,10 @@ class SimulationListener {
  public:
   virtual ~SimulationListener() = default;
 
-  /// Called after an accepted step, before the divisions due at its end.
+  /// Called after an accepted step, before the divisions and exchanges due at its end.
   virtual void step_accepted(const AcceptedStep& /*step*/, const Observation& /*measures*/) {}
 
-  /// Called after divisions, which change model and state of the simulation.
+  /// Called after divisions or exchanges, which change model and state of the simulation.
   virtual void cells_divided(const TissueChange& /*change*/) {}
 };
 
@@ -62,8 +62,8 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
 
-  /// Take the next step, shortened until it is accepted, to `until_s` at most; then make the divisions due. Returns
-  /// false if the run has ended, the step failed or was stopped, or the time is `until_s` already.
+  /// Take the next step, shortened until it is accepted, to `until_s` at most; then make the divisions and
+  /// exchanges due. Returns false if the run has ended, the step failed or was stopped, or the time is `until_s` already.
   bool step(double until_s = std::numeric_limits<double>::infinity());
 
   /// Take steps to exactly `time_s`, or until the run ends, fails or is stopped.
@@ -138,6 +138,8 @@ class Simulation {
   std::optional<StepReport> take_step(double until_s, State& before);
   bool advance_signals(const Model& model, State& next);
   void divide(const std::vector<PlannedDivision>& due);
+  void exchange();
+  void adopt(const TissueChange& change);
   void restart_at_a_jump();
   EnergyFlow account_for_energy(const State& before);
   void renew_stepper();

@@ -283,7 +283,10 @@ std::pair<std::vector<Vec3>, std::vector<Vec3>> halves_of_prism(const CellCut& c
 bool cuts_bend(const Tissue& tissue, CellId cell) { return has_middle(tissue.sheet.cells[cell.index()]); }
 
 std::optional<std::string> why_indivisible(const Tissue& tissue) {
-  if (tissue.is_periodic()) return "the tissue is periodic";
+  return tissue.is_periodic() ? "the tissue is periodic" : why_unchangeable(tissue);
+}
+
+std::optional<std::string> why_unchangeable(const Tissue& tissue) {
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     const Polygon& polygon = tissue.sheet.cells[c];
     if (polygon.quadrilaterals.empty()) return "its cells have elements that no split of polygons makes";

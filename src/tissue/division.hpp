@@ -25,8 +25,11 @@ struct CellCut {
   int second_wall = first_wall + 2;  // above the first
 };
 
-/// Returns the reason why cells cannot divide, or nothing: cells must be polygons with a split, or grid cells with one
-/// element along and across, in a single layer.
+/// Returns the reason why the topology cannot change, or nothing: cells must be polygons with a split, or grid cells
+/// with one element along and across, in a single layer.
+std::optional<std::string> why_unchangeable(const Tissue& tissue);
+
+/// Returns the reason why cells cannot divide, or nothing: the topology must be changeable, without periods.
 std::optional<std::string> why_indivisible(const Tissue& tissue);
 
 /// Cuts cells, each at most once, at `time_s`. Each daughter gets half of the rest shape of the mother, and its regions

@@ -133,9 +133,16 @@ VertexId SheetOfColumns::vertex_of(const Column& column) {
 
 namespace {
 
-bool is_consistent(const Polygon& polygon, const std::vector<Vertex>& vertices, std::size_t free_nodes) {
+bool is_consistent(const Polygon& polygon, const std::vector<Vertex>& vertices, std::size_t free_nodes,
+                   bool has_images) {
   const auto is_known = [&](VertexId vertex) {
-    if (!vertex.is_among(vertices.size()) || vertices[vertex.index()].original.valid()) return false;
+    if (!vertex.is_among(vertices.size())) return false;
+    if (const VertexId original = vertices[vertex.index()].original; original.valid()) {
+      if (!has_images || !original.is_among(vertices.size()) || vertices[original.index()].original.valid() ||
+          vertices[original.index()].nodes.size() != vertices[vertex.index()].nodes.size())
+        return false;
+      vertex = original;
+    }
     const auto& nodes = vertices[vertex.index()].nodes;
     return nodes.size() > 1 && nodes.size() == vertices[polygon.ring.front().vertex.index()].nodes.size() &&
            std::ranges::all_of(nodes, [&](NodeId node) { return node.is_among(free_nodes); });
@@ -160,9 +167,10 @@ bool is_consistent(const Polygon& polygon, const std::vector<Vertex>& vertices, 
 
 }  // namespace
 
-bool is_consistent(const Sheet& sheet, std::size_t free_nodes) {
-  return std::ranges::all_of(
-      sheet.cells, [&](const Polygon& polygon) { return is_consistent(polygon, sheet.vertices, free_nodes); });
+bool is_consistent(const Sheet& sheet, std::size_t free_nodes, bool has_images) {
+  return std::ranges::all_of(sheet.cells, [&](const Polygon& polygon) {
+    return is_consistent(polygon, sheet.vertices, free_nodes, has_images);
+  });
 }
 
 }  // namespace plica

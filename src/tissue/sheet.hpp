@@ -128,7 +128,7 @@ class SheetOfColumns {
   std::map<std::pair<NodeId, NodeId>, VertexId> vertices_;  // by base and apex
 };
 
-/// Whether the vertices and splits of polygons fit this number of free nodes, for a sheet from outside, without images.
-bool is_consistent(const Sheet& sheet, std::size_t free_nodes);
+/// Whether the vertices and splits of polygons fit this number of free nodes, for a sheet from outside.
+bool is_consistent(const Sheet& sheet, std::size_t free_nodes, bool has_images);
 
 }  // namespace plica

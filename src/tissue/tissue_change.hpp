@@ -1,5 +1,6 @@
-// Change of a tissue's topology: what became of its cells, walls and nodes. Division, kept part and mirror side each
-// return one, and data follow it: by cell (ByCell, follow), by node (with_new_nodes), or by a rule of their own.
+// Change of a tissue's topology: what became of its cells, walls and nodes. Division, exchange, kept part and mirror
+// side each return one, and data follow it: by cell (ByCell, follow), by node (with_new_nodes), or by a rule of their
+// own.
 #pragma once
 
 #include <array>
@@ -17,11 +18,13 @@ namespace plica {
 struct TissueChange {
   std::vector<CellId> origin;                               // cells now; the former cell of each
   std::vector<std::array<CellId, 2>> daughters;             // cuts
+  CellSet remeshed = {};                                    // cells now; with other rest shapes; empty: none
   std::vector<WallId> wall_origin;                          // walls now; the former wall of each, invalid: it is new
   std::vector<NodeId> node_origin;                          // free nodes that stay; the former node of each
   std::vector<NodeMean> new_nodes;                          // position of each, by nodes before it
   std::map<std::pair<NodeId, NodeId>, NodeId> node_midway;  // nodes that split an edge, by its ordered ends
 
+  [[nodiscard]] bool is_remeshed(CellId cell) const { return !remeshed.empty() && remeshed[cell.index()]; }
   /// Number of free nodes that stay: the first new node.
   [[nodiscard]] std::size_t kept_nodes() const { return node_origin.size(); }
 };

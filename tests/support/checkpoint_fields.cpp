@@ -36,10 +36,11 @@ struct Fields {
 
   void take_state(const State& state) {
     const auto& [time_s, positions, velocities, multipliers, obstacle_forces, on_obstacle, internals, signals,
-                 divided_until_s, trend] = state;
+                 divided_until_s, exchanges, trend] = state;
     take("time_s", time_s), take("positions", positions), take("velocities", velocities);
     take("multipliers", multipliers), take("obstacle_forces", obstacle_forces), take("on_obstacle", on_obstacle);
     take("internals", internals), take("signals", signals), take("divided_until_s", divided_until_s);
+    numbers["exchanges"] = as_numbers(exchanges);
     const auto& [step_s, earlier_s, mean_velocities, accelerations, multiplier_rates] = trend;
     take("trend.step_s", step_s), take("trend.earlier_s", earlier_s), take("trend.mean_velocities", mean_velocities);
     take("trend.accelerations", accelerations), take("trend.multiplier_rates", multiplier_rates);

@@ -16,6 +16,7 @@ inline void expect_same(const State& a, const State& b) {
   EXPECT_EQ(a.obstacle_forces, b.obstacle_forces);
   EXPECT_EQ(a.on_obstacle, b.on_obstacle);
   EXPECT_EQ(a.divided_until_s, b.divided_until_s);
+  EXPECT_EQ(as_numbers(a.exchanges), as_numbers(b.exchanges));
   EXPECT_EQ(a.trend.step_s, b.trend.step_s);
   EXPECT_EQ(a.trend.earlier_s, b.trend.earlier_s);
   EXPECT_EQ(a.trend.mean_velocities, b.trend.mean_velocities);

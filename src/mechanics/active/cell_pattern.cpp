@@ -168,13 +168,21 @@ double StrengthProfile::nearness(double place) const {
 
 double Taper::nearness(double distance) const { return fade > 0 ? fading(distance - 0.5 * full_length, fade) : 1; }
 
+// By Box and Muller.
+double normal_deviate(std::uint64_t seed, std::uint64_t number) {
+  const std::uint64_t first = mixed(mixed(seed) + number), second = mixed(first);
+  return std::sqrt(-2 * std::log(uniform(first))) * std::cos(2 * std::numbers::pi * uniform(second));
+}
+
+std::uint64_t pair_number(int one, int other) {
+  return mixed(mixed(static_cast<std::uint64_t>(one)) + static_cast<std::uint64_t>(other));
+}
+
 double chance_factor(double spread, std::uint64_t seed, std::uint64_t cell) {
   if (spread <= 0) return 1;
-  const std::uint64_t first = mixed(mixed(seed) + cell), second = mixed(first);
-  // Box and Muller's normal deviate; the factor's logarithm has the variance s2 and the mean -s2/2.
-  const double normal = std::sqrt(-2 * std::log(uniform(first))) * std::cos(2 * std::numbers::pi * uniform(second));
+  // The factor's logarithm has the variance s2 and the mean -s2/2.
   const double s2 = std::log(1 + spread * spread);
-  return std::exp(std::sqrt(s2) * normal - 0.5 * s2);
+  return std::exp(std::sqrt(s2) * normal_deviate(seed, cell) - 0.5 * s2);
 }
 
 // Places are distinguished by steps of 0.01 um. Their limits avoid round coordinates, where rounding would decide.

@@ -127,6 +127,12 @@ CellPattern cell_pattern(const Tissue& tissue, const CellSet& cells, const Patte
 /// on all machines except for rounding in exp, log and cos.
 double chance_factor(double spread, std::uint64_t seed, std::uint64_t cell);
 
+/// Return a standard normal deviate, a function of both numbers only, likewise.
+double normal_deviate(std::uint64_t seed, std::uint64_t number);
+
+/// Return a well mixed number for two.
+std::uint64_t pair_number(int one, int other);
+
 /// Return a number for the place of a cell, as a random seed independent of cell numbering; equal for places that
 /// differ by rounding.
 std::uint64_t place_number(const Vec3& place);

@@ -66,6 +66,7 @@ Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kerne
     rest_areas_.push_back(area_at_rest(tissue, face));
     strengths_.push_back(strength_of(face, pattern_));
   }
+  if (rule_.walls.noise.spread > 0) pairs_ = pair_numbers(tissue, faces_);
   chunks_ = chunks_of(tissue, elements_);
   batches_.resize(chunks_.batch_count());
   take_stretches(std::vector<double>(faces_.size(), 1));
@@ -127,9 +128,24 @@ double Cortex::stiffening_of(std::size_t f, const Step& step) const {
   return of_face(f, [&](CellId cell) { return stiffening(cell, step); });
 }
 
+// Compute the factors of faces before `active` reads them.
+void Cortex::take_factors(const Step& step) const {
+  const auto& [direction, noise] = rule_.walls;
+  if (!rule_.walls.is_used()) return;
+  const std::span<const Vec3> positions = direction ? step.previous_positions : std::span<const Vec3>();
+  if (factors_.time_s == step.end_time_s && std::ranges::equal(factors_.positions, positions)) return;
+  kept_ = {};
+  factors_ = {{positions.begin(), positions.end()}, step.end_time_s, std::vector<double>(faces_.size(), 1)};
+  chunks_.for_elements([&](std::size_t f) {
+    if (direction) factors_.of_face[f] *= direction_factor(*direction, gather(positions, faces_[f].nodes));
+    if (noise.spread > 0) factors_.of_face[f] *= noise_factor(noise, pairs_[f], step.end_time_s);
+  });
+}
+
 Cortex::Response Cortex::active(std::size_t f, double area, const Step& step, bool with_energy) const {
   const double acting = of_face(f, [&](CellId cell) { return activity(cell, step.end_time_s, step.internal); });
-  const double gamma = acting * rule_.tension, saturation = rule_.saturation * rest_areas_[f];
+  const double factor = rule_.walls.is_used() ? factors_.of_face[f] : 1;
+  const double gamma = factor * acting * rule_.tension, saturation = rule_.saturation * rest_areas_[f];
   if (saturation <= 0) return {gamma * area, gamma, 0};
   return {with_energy ? gamma * (area - saturation * std::log1p(area / saturation)) : 0,
           gamma * area / (area + saturation), gamma * saturation / ((area + saturation) * (area + saturation))};
@@ -164,6 +180,7 @@ Cortex::Response Cortex::respond(std::size_t f, double area, const Step& step, b
 }
 
 EnergyFlow Cortex::energy_flow(const CompletedStep& completed) const {
+  take_factors(completed.motion);
   const std::vector<double> before = areas(completed.begin.positions), after = areas(completed.end.positions);
   std::vector<EnergyFlow> flows_of(faces_.size());
   chunks_.for_elements([&](std::size_t f) {
@@ -214,6 +231,7 @@ Cortex::FaceTensions Cortex::face_tensions(const Step& step) const {
                      {step.internal.begin(), step.internal.end()},
                      {step.end_time_s, step.rate_s, step.ahead}};
   faces.tensions.resize(places(), 0.0);
+  take_factors(step);
   chunks_.for_elements([&](std::size_t f) {
     const Response response = respond(f, faces.tensions[f], step, false);
     faces.tensions[f] = response.tension;
@@ -223,6 +241,7 @@ Cortex::FaceTensions Cortex::face_tensions(const Step& step) const {
 }
 
 FaceArrays Cortex::kernel_arrays(const Step& step) const {
+  take_factors(step);
   if (!kept_.are_of(step)) kept_ = face_tensions(step);
   return {batches_.data(),       faces_.size(),       components(step.positions),
           kept_.tensions.data(), kept_.slopes.data(), step.semidefinite_tangent};
@@ -235,6 +254,7 @@ std::vector<double> Cortex::tensions(const Step& step) const {
 }
 
 double Cortex::energy(const Step& step) const {
+  take_factors(step);
   const std::vector<double> now = areas(step.positions);
   return chunks_.sum_over_elements([&](std::size_t f) { return respond(f, now[f], step, true).energy; });
 }
@@ -281,7 +301,8 @@ std::vector<double> Cortex::with_signals(std::span<const double> internal, std::
   return result;
 }
 
-// Origin of a face: the earlier face with the same nodes, else all between the same cells; none between daughters.
+// Origin of a face: the earlier face with the same nodes, else all between the same cells; none between daughters, or
+// cells that have met.
 class Cortex::Origins {
  public:
   Origins(const Cortex& before, const TissueChange& change) : before_(before), change_(change) {
@@ -292,15 +313,26 @@ class Cortex::Origins {
     }
   }
 
-  [[nodiscard]] std::vector<std::size_t> of(const Face& face) const {
-    // Hanging nodes are numbered again when cells divide.
-    const std::array<NodeId, 4> nodes = sorted(face.nodes);
-    const bool are_known = change_.daughters.empty() || nodes.back().index() < change_.kept_nodes();
-    if (const auto same = by_nodes_.find(nodes); are_known && same != by_nodes_.end()) return {same->second};
-    const auto origin = [&](CellId cell) { return change_.origin[cell.index()]; };
-    const auto found =
-        by_cells_.find(cells_of(origin(face.cell), face.beyond ? std::optional(origin(*face.beyond)) : std::nullopt));
-    return found == by_cells_.end() ? std::vector<std::size_t>() : found->second;
+  [[nodiscard]] std::vector<std::vector<std::size_t>> of(std::span<const Face> faces) const {
+    std::vector<std::vector<std::size_t>> origins;
+    std::map<CellId, std::size_t> ordinals;
+    for (const Face& face : faces) origins.push_back(of(face, ordinals[face.cell]++));
+    return origins;
+  }
+
+  /// Reference areas that do not follow from areas in the undeformed tissue, given present ones and origins: of faces
+  /// without origin, and of all where cells are remeshed, which share that of their origins. 0: it follows from them.
+  [[nodiscard]] std::vector<double> first_areas(std::span<const Face> faces, std::span<const double> now,
+                                                const std::vector<std::vector<std::size_t>>& origins) const {
+    std::map<std::vector<std::size_t>, double> wholes;
+    for (std::size_t f = 0; f < faces.size(); ++f) wholes[origins[f]] += now[f];
+    std::vector<double> first(faces.size(), 0.0);
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      if (origins[f].empty()) first[f] = change_.remeshed.empty() ? now[f] : mean_about(faces[f]).value_or(now[f]);
+      if (change_.remeshed.empty()) continue;
+      for (const std::size_t from : origins[f]) first[f] += before_.rest_areas_[from] * (now[f] / wholes[origins[f]]);
+    }
+    return first;
   }
 
   /// Mean of values of these faces, weighted by their reference areas.
@@ -311,6 +343,36 @@ class Cortex::Origins {
   }
 
  private:
+  // `ordinal`: among the faces of its cell.
+  [[nodiscard]] std::vector<std::size_t> of(const Face& face, std::size_t ordinal) const {
+    const auto origin = [&](CellId cell) { return change_.origin[cell.index()]; };
+    const auto cells = cells_of(origin(face.cell), face.beyond ? std::optional(origin(*face.beyond)) : std::nullopt);
+    const auto found = by_cells_.find(cells);
+    if (!change_.remeshed.empty() && before_.rule_.side != CellSide::lateral)
+      return change_.is_remeshed(face.cell) ? found->second : std::vector{found->second[ordinal]};
+    // Hanging nodes are numbered again when cells change; a wall that turns keeps its nodes.
+    const std::array<NodeId, 4> nodes = sorted(face.nodes);
+    const bool are_known =
+        (change_.daughters.empty() && change_.remeshed.empty()) || nodes.back().index() < change_.kept_nodes();
+    const auto is_between = [&](const Face& other) { return cells_of(other.cell, other.beyond) == cells; };
+    if (const auto same = by_nodes_.find(nodes); are_known && same != by_nodes_.end())
+      if (change_.remeshed.empty() || is_between(before_.faces_[same->second])) return {same->second};
+    return found == by_cells_.end() ? std::vector<std::size_t>() : found->second;
+  }
+
+  // Mean reference area of the former faces of both cells.
+  [[nodiscard]] std::optional<double> mean_about(const Face& face) const {
+    double sum = 0;
+    int count = 0;
+    for (std::size_t f = 0; f < before_.faces_.size(); ++f)
+      for (const CellId cell : {face.cell, face.beyond.value_or(face.cell)}) {
+        if (before_.faces_[f].cell != cell && before_.faces_[f].beyond != cell) continue;
+        sum += before_.rest_areas_[f];
+        ++count;
+      }
+    return count > 0 ? std::optional(sum / count) : std::nullopt;
+  }
+
   static std::array<NodeId, 4> sorted(std::array<NodeId, 4> nodes) {
     std::ranges::sort(nodes);
     return nodes;
@@ -324,11 +386,13 @@ class Cortex::Origins {
 
 void Cortex::inherit_faces(const Origins& origins, const Cortex& before, std::span<const Vec3> positions) {
   const std::vector<double> now = areas(positions);
+  const auto all = origins.of(faces_);
+  const std::vector<double> first = origins.first_areas(faces_, now, all);
   std::vector<double> stretches;
   const std::vector<double> stretches_before = before.past();
   for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const std::vector<std::size_t> from = origins.of(faces_[f]);
-    stretches.push_back(from.empty() ? now[f] / rest_areas_[f] : origins.mean(from, stretches_before));
+    const std::vector<std::size_t>& from = all[f];
+    stretches.push_back(first[f] > 0 ? first[f] / rest_areas_[f] : origins.mean(from, stretches_before));
     // In a part of a tissue, the neighbour that is left out keeps its half of a wall.
     if (from.empty() || faces_[f].beyond || !before.faces_[from.front()].beyond) continue;
     faces_[f].share *= 0.5;
@@ -391,17 +455,21 @@ std::unique_ptr<Law> Cortex::restored(const Tissue& tissue, const TissueChange& 
 }
 
 std::vector<double> Cortex::internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                    const TissueChange& change, const ChangePositions&) const {
+                                                    const TissueChange& change,
+                                                    const ChangePositions& positions) const {
   const Memory before = memory(internal);
   std::vector<double> after;
   if (flows()) {
     const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(change));
     const Origins origins(*this, change);
+    const auto all = origins.of(faces);
+    std::vector<double> now(faces.size(), 1);
+    for (std::size_t f = 0; f < faces.size() && !positions.after.empty(); ++f)
+      now[f] = facet_area(gather(positions.after, faces[f].nodes));
+    const std::vector<double> first = origins.first_areas(faces, now, all);
     for (const std::span<const double> areas : {before.areas, before.areas_before})
-      for (const Face& face : faces) {
-        const std::vector<std::size_t> from = origins.of(face);
-        after.push_back(from.empty() ? 1 : origins.mean(from, areas));
-      }
+      for (std::size_t f = 0; f < faces.size(); ++f)
+        after.push_back(all[f].empty() ? now[f] / first[f] : origins.mean(all[f], areas));
   }
   if (activation_.is_used())
     after =

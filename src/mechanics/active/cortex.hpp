@@ -11,6 +11,7 @@
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/active/shape_activation.hpp"
+#include "mechanics/active/wall_factors.hpp"
 #include "mechanics/derivatives.hpp"
 #include "mechanics/kernels/batch_law.hpp"
 #include "tissue/faces.hpp"
@@ -29,6 +30,7 @@ struct CortexRule {
   Program program = {};                 // time course of gamma; starts after the delay of the cell
   Program stiffness_program = {};       // time course of k
   ShapeActivationRule activation = {};  // shape-dependent start of both programs, or factor on the tension
+  WallFactorRule walls = {};            // of lateral faces: factors on gamma
 };
 
 /// Cortex law. Cell strengths scale all terms. A lateral face is shared by two cells and takes the mean of their
@@ -52,6 +54,8 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
                                            std::span<const GrowthTensor> tensors) const override;
   /// Faces keep their reference area, per area in the undeformed tissue, and their strain (stress-free / reference
   /// area), also as parts of a face that was cut. The reference area of a face between daughters is its present one.
+  /// Where cells meet by an exchange, it is the mean of both cells' other lateral faces; if areas relax, such a face
+  /// begins at its stress-free area.
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
   /// Reference areas of faces born in divisions depend on positions then, and all on growth: reference areas / areas in
@@ -104,6 +108,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] Response elastic(std::size_t face, double area, const Step& step, double b, bool with_energy) const;
   [[nodiscard]] Response crowded(std::size_t face, double area, bool with_energy) const;
   [[nodiscard]] double stiffening_of(std::size_t face, const Step& step) const;
+  void take_factors(const Step& step) const;
   struct FaceTensions {                    // all faces at the end of a step
     std::vector<double> tensions, slopes;  // faces, filled up to whole batches
     Vectors positions;                     // what they depend on
@@ -145,7 +150,15 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   std::vector<double> strengths_;  // faces
   ShapeActivation activation_;
   std::vector<FaceBatch> batches_;
+  std::vector<std::uint64_t> pairs_;  // faces; of their cells, if walls have noise
   mutable FaceTensions kept_;  // of the last iterate, for all products of its linear system; one thread at a time
+  // Factors of lateral faces (WallFactorRule), by the positions at the beginning of a step and the time at its end.
+  struct Factors {
+    Vectors positions;
+    double time_s = -1;
+    std::vector<double> of_face;
+  };
+  mutable Factors factors_;
 };
 
 }  // namespace plica

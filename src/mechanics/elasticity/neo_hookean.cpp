@@ -169,6 +169,23 @@ std::unique_ptr<Law> NeoHookean::after_division(const Tissue& tissue, const Tiss
   return std::make_unique<NeoHookean>(tissue, materials_.after_division(tissue, change), kernels_);
 }
 
+std::optional<Mat3> NeoHookean::elastic_stretch(std::span<const double> internal, std::span<const Vec3> positions,
+                                                std::span<const ElementId> elements) const {
+  Mat3 sum = Mat3::Zero();
+  double weights = 0;
+  for (const ElementId id : elements) {
+    const std::size_t e = id.index();
+    const HexPoints points = gather(positions, elements_[e]);
+    for (int g = 0; g < 8; ++g) {
+      const double weight = batches_[e / batch_size].weights[g][e % batch_size];
+      const Mat3 F = deformation_gradient(points, rest_[e], g);
+      sum += weight * F * (flows_ ? flowed(internal, id, g).inverse() : Mat3(Mat3::Identity())) * F.transpose();
+      weights += weight;
+    }
+  }
+  return Mat3(sum / weights);
+}
+
 std::vector<double> NeoHookean::internal_after_division(std::span<const double> internal, const Tissue& tissue,
                                                         const TissueChange& change, const ChangePositions&) const {
   if (!flows_) return {};
@@ -187,10 +204,16 @@ std::vector<double> NeoHookean::internal_after_division(std::span<const double> 
   for (std::size_t place = 0; place < batches * batch_size; ++place)
     for (int g = 0; g < 8; ++g) {
       const std::size_t e = std::min(place, count - 1);
+      const CellId cell = tissue.element_cell[e];
+      if (change.is_remeshed(cell)) {
+        for (const std::span<FlowedBatch> batch : {now_after, earlier_after})
+          put(Mat3::Identity(), first_of(batch, place, g));
+        continue;
+      }
       const Vec3 x = where(tissue.element_rest_shape[e], g);
       double least = std::numeric_limits<double>::infinity();
       std::pair<std::size_t, int> nearest;
-      for (const std::size_t old : of_cell[change.origin[tissue.element_cell[e].index()].index()])
+      for (const std::size_t old : of_cell[change.origin[cell.index()].index()])
         for (int h = 0; h < 8; ++h)
           if (const double distance = (where(rest_[old], h) - x).squaredNorm(); distance < least) {
             least = distance;

@@ -80,10 +80,47 @@ void check_shape_activation(const std::string& table, const CortexInput& cortex,
     report(".follow", "is not used without tension_mN_per_m", "remove it, or set tension_mN_per_m");
 }
 
+// Checks factors on the tension of lateral faces.
+void check_walls(const std::string& table, const CortexInput& cortex, const TimeInput& time, Input& input) {
+  const auto& [axis, strongest, weakest] = cortex.direction;
+  const auto& [spread, correlation_s, seed] = cortex.noise;
+  const auto report = [&](const std::string& key, const std::string& problem, const std::string& remedy) {
+    if (input.sound(table, table + key)) input.report(table + key, problem, remedy);
+  };
+  for (const auto& [part, is_used] : {std::pair(".direction", !axis.empty()), {".noise", spread > 0}}) {
+    if (!is_used || !input.sound(table + ".faces")) continue;
+    if (cortex.faces != "lateral")
+      report(part, "acts on lateral faces only", "remove it, or set faces to \"lateral\"");
+    else if (cortex.tension_mN_per_m == 0)
+      report(part, "is not used without tension_mN_per_m", "remove it, or set tension_mN_per_m");
+  }
+  if (axis.empty() && (strongest != 1 || weakest != 1))
+    report(".direction.axis", "is missing", "set axis to \"along\" or \"across\"");
+  if (!axis.empty() && strongest == weakest)
+    report(".direction", "has no effect, since strongest equals weakest", "set strongest above weakest");
+  if (spread > 0 && !correlation_s)
+    report(".noise.correlation_s", "is missing", "set it to the time in which tensions change, such as 120");
+  if (spread == 0 && correlation_s)
+    report(".noise.spread", "is missing", "set it to a relative deviation, such as 0.5");
+  if (spread > 0 && correlation_s && time.step_s && *time.step_s > *correlation_s / 4)
+    report(".noise.correlation_s", fmt::format("{} is below four times time.step_s", *correlation_s),
+           "reduce time.step_s, or increase correlation_s");
+}
+
 void check_cortex(const std::string& table, CortexInput& cortex, const Scenario& scenario, Input& input) {
+  check_walls(table, cortex, scenario.time, input);
   check_program(table, cortex.stiffness_program, input, "stiffness_program");
   check_effect(table, cortex, input);
   check_shape_activation(table, cortex, scenario, input);
+}
+
+WallFactorRule make_wall_factors(const CortexInput& input) {
+  WallFactorRule rule;
+  if (const auto& [axis, strongest, weakest] = input.direction; !axis.empty())
+    rule.direction = WallDirection{axis == "across", strongest, weakest};
+  rule.noise = {input.noise.spread, input.noise.correlation_s.value_or(0),
+                static_cast<std::uint64_t>(input.noise.seed)};
+  return rule;
 }
 
 ShapeActivationRule make_shape_activation(const CortexInput& input, const Scenario& scenario) {
@@ -122,6 +159,7 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
     rule.program = make_program(input.program);
     rule.stiffness_program = make_program(input.stiffness_program);
     rule.activation = make_shape_activation(input, scenario);
+    rule.walls = make_wall_factors(input);
     const std::string table = "cortex." + name;
     CellPattern pattern = make_ablated_pattern(scenario, table, input, origin);
     model.laws.push_back(std::make_unique<Cortex>(model.tissue, std::move(pattern), std::move(rule)));
@@ -184,6 +222,20 @@ ScenarioTable cortex_table() {
                            "Value at which, and before which, the factor is 0."),
                        row("follow.to", &X::follow, &FollowInput::to, not_negative,
                            "Value at which, and beyond which, the factor is 1."),
+                       row("direction.axis", &X::direction, &WallDirectionInput::axis, one_of({"along", "across"}),
+                           "Planar polarity of lateral faces: axis of the angle a between it and a face's normal."),
+                       row("direction.strongest", &X::direction, &WallDirectionInput::strongest, not_negative,
+                           "Factor on the tension at a = 0: faces across the axis."),
+                       row("direction.weakest", &X::direction, &WallDirectionInput::weakest, not_negative,
+                           "Factor at a right angle; between them, by cos² a."),
+                       row("noise.spread", &X::noise, &WallNoiseInput::spread, between(0, 3),
+                           "Fluctuating tension of lateral faces: relative standard deviation of log-normal factors of "
+                           "mean 1, independent for each pair of cells."),
+                       row("noise.correlation_s", &X::noise, &WallNoiseInput::correlation_s, positive,
+                           "Time in which the correlation falls to 1/e (s); steps are at most a quarter of it."),
+                       row("noise.correlation_min", &X::noise, &WallNoiseInput::correlation_s, positive,
+                           "`noise.correlation_s` in minutes.", {.instead_of = "noise.correlation_s", .scale = 60}),
+                       row("noise.seed", &X::noise, &WallNoiseInput::seed, not_negative, "Seed of these factors."),
                    });
   add_pattern(info.rows, acting(row));
   info.build = build;

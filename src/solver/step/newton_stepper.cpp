@@ -191,6 +191,7 @@ void NewtonStepper::accept(const State& state, const Step& step, double duration
   next.internals = next_internals(model_, step);
   next.time_s = state.time_s + duration_s;
   next.divided_until_s = state.divided_until_s;
+  next.exchanges = state.exchanges;
   next.positions = std::move(at.positions);
   next.multipliers = std::move(at.multipliers);
   next.obstacle_forces = std::move(at.obstacle_forces);

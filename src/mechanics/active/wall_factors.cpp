@@ -1,0 +1,59 @@
+#include "mechanics/active/wall_factors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mechanics/active/cell_pattern.hpp"
+
+namespace plica {
+
+double direction_factor(const WallDirection& direction, const std::array<Vec3, 4>& face) {
+  const Vec3 normal = facet_area_vector(face).normalized();
+  const Vec3 up = (face[2] + face[3] - face[0] - face[1]).normalized();  // from base to apex
+  const Vec3 axis = direction.across ? Vec3::UnitY() : Vec3::UnitX();
+  const Vec3 in_surface = axis - axis.dot(up) * up;
+  const double squared = in_surface.squaredNorm();
+  const double cosine = squared > 1e-6 ? normal.dot(in_surface) * normal.dot(in_surface) / squared : 0.5;
+  return direction.weakest + (direction.strongest - direction.weakest) * cosine;
+}
+
+double noise_factor(const WallNoise& noise, std::uint64_t pair, double time_s) {
+  // Knots in a correlation time, those remembered, and how often the process is refined between two of them.
+  constexpr int parts = 4, remembered = 12 * parts, refinements = 3;
+  const double at = time_s * parts / noise.correlation_s, correlation = std::exp(-1.0 / parts);
+  const auto knot = static_cast<std::int64_t>(std::floor(at));
+  const auto deviate = [&](int level, std::int64_t place) {
+    return normal_deviate(noise.seed,
+                          pair + static_cast<std::uint64_t>(place) + (static_cast<std::uint64_t>(level) << 60));
+  };
+  double low = 0, weight = std::sqrt(1 - correlation * correlation);
+  const double fresh = weight * deviate(0, knot + 1);
+  for (int k = 0; k < remembered; ++k, weight *= correlation) low += weight * deviate(0, knot - k);
+  double high = correlation * low + fresh, part = at - static_cast<double>(knot), half = 0.5 / parts;
+  std::int64_t place = knot;
+  for (int level = 1; level <= refinements; ++level, half /= 2, part *= 2) {
+    // Between two values, the middle has the mean (low + high)/(2 cosh h) and the variance tanh h.
+    const double middle = (low + high) / (2 * std::cosh(half)) + std::sqrt(std::tanh(half)) * deviate(level, place);
+    const bool is_later = part >= 0.5;
+    (is_later ? low : high) = middle;
+    place = 2 * place + (is_later ? 1 : 0);
+    if (is_later) part -= 0.5;
+  }
+  const double rest = 1 - part;
+  const double normal =
+      (rest * low + part * high) / std::sqrt(rest * rest + part * part + 2 * part * rest * std::exp(-2 * half));
+  const double variance = std::log1p(noise.spread * noise.spread);
+  return std::exp(std::sqrt(variance) * normal - 0.5 * variance);
+}
+
+std::vector<std::uint64_t> pair_numbers(const Tissue& tissue, std::span<const Face> faces) {
+  std::vector<std::uint64_t> numbers;
+  for (const Face& face : faces) {
+    const auto id = [&](CellId cell) { return tissue.cells[cell.index()].lineage.id; };
+    const int own = id(face.cell), other = face.beyond ? id(*face.beyond) : -1;
+    numbers.push_back(pair_number(std::min(own, other), std::max(own, other)));
+  }
+  return numbers;
+}
+
+}  // namespace plica

@@ -1,0 +1,123 @@
+#include "mechanics/exchange.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "mechanics/division.hpp"
+#include "mechanics/energy.hpp"
+
+namespace plica {
+namespace {
+
+// Inverse of the cell's mean elastic stretch V, without its change of volume.
+Mat3 unstretch(const Model& model, const State& state, CellId id) {
+  const Cell& cell = model.tissue.cells[id.index()];
+  std::vector<ElementId> elements;
+  for (int e = 0; e < cell.element_count; ++e) elements.emplace_back(cell.first_element.index() + e);
+  for (std::size_t l = 0; l < model.laws.size(); ++l) {
+    const auto b = model.laws[l]->elastic_stretch(state.internals[l], state.positions, elements);
+    if (!b) continue;
+    const Eigen::SelfAdjointEigenSolver<Mat3> axes(*b);
+    const Vec3 stretches = axes.eigenvalues().cwiseSqrt();
+    const Vec3 inverse = std::cbrt(stretches.prod()) * stretches.cwiseInverse();
+    return axes.eigenvectors() * inverse.asDiagonal() * axes.eigenvectors().transpose();
+  }
+  return Mat3::Identity();
+}
+
+// Energy of the laws less the work of pressures on the volumes: what remains of the energy once volumes are restored,
+// to first order.
+double energy_of(const Model& model, const State& state) {
+  double sum = 0;
+  for_laws(model, motionless(state, state.velocities),
+           [&](const Law& law, const Step& step) { sum += law.energy(step); });
+  const std::vector<double> volumes = model.volumes.volumes(state.positions);
+  for (std::size_t c = 0; c < volumes.size(); ++c) sum -= state.multipliers[c] * volumes[c];
+  return sum;
+}
+
+Vectors forces_of(const Model& model, const State& state) {
+  Vectors forces(model.tissue.node_count(), Vec3::Zero());
+  for_laws(model, motionless(state, state.velocities),
+           [&](const Law& law, const Step& step) { law.add_forces(step, forces); });
+  for_held_constraints(model, [&](const Constraint& constraint, std::size_t first, std::size_t) {
+    constraint.add_forces(state.positions, std::span(state.multipliers).subspan(first, constraint.count()), forces);
+  });
+  model.tissue.carry_hanging(forces);
+  return forces;
+}
+
+// Force by which the columns of the turned wall are pulled apart, nN: mean of base and apex.
+double opening_force(const Model& model, const WallTurn& turn, const Vectors& positions, const Vectors& forces) {
+  const auto &begin = column(model.tissue.sheet, turn.begin), &end = column(model.tissue.sheet, turn.end);
+  double sum = 0;
+  for (const std::size_t level : {std::size_t{0}, begin.size() - 1}) {
+    const Vec3 way = wall_vector(model.tissue, turn, level, positions).normalized();
+    sum += 0.5 * way.dot(forces[end[level].index()] - forces[begin[level].index()]);
+  }
+  return sum;
+}
+
+// Both columns of a wall go on with their mean velocity, and without acceleration; pressures start anew.
+void follow_trend(const Model& model, const TissueChange& change, std::span<const WallTurn> turns, State& state) {
+  State::Trend& trend = state.trend;
+  for (const WallTurn& turn : turns) {
+    const auto &begin = column(model.tissue.sheet, turn.begin), &end = column(model.tissue.sheet, turn.end);
+    for (std::size_t level = 0; level < begin.size(); ++level) {
+      for (Vectors* velocities : {&state.velocities, &trend.mean_velocities}) {
+        if (velocities->empty()) continue;
+        Vec3 &one = (*velocities)[begin[level].index()], &other = (*velocities)[end[level].index()];
+        one = other = 0.5 * (one + other);
+      }
+      for (const NodeId node : {begin[level], end[level]})
+        if (!trend.accelerations.empty()) trend.accelerations[node.index()].setZero();
+    }
+    for (const CellId cell : turn.cells())
+      if (cell.valid() && !trend.multiplier_rates.empty()) trend.multiplier_rates[cell.index()] = 0;
+  }
+  for (Vectors* vectors : {&state.velocities, &trend.mean_velocities, &trend.accelerations})
+    if (!vectors->empty()) *vectors = with_new_nodes(model.tissue, change, *vectors);
+}
+
+TissueChange turn(Model& model, State& state, std::vector<WallTurn>& turns, double length_um) {
+  std::vector<Mat3> inverse(model.tissue.cells.size(), Mat3::Identity());
+  for (const WallTurn& one : turns)
+    for (const CellId cell : one.cells())
+      if (cell.valid()) inverse[cell.index()] = unstretch(model, state, cell);
+  const Vectors before = state.positions;
+  TissueChange change =
+      turn_walls(model.tissue, turns, length_um, state.positions, [&](CellId cell) { return inverse[cell.index()]; });
+  follow_trend(model, change, turns, state);
+  follow_change(model, state, change, before);
+  return change;
+}
+
+}  // namespace
+
+std::optional<ExchangeOutcome> exchange_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
+                                                   double length_um) {
+  if (turns.empty()) return std::nullopt;
+  Model present(model);
+  settle_growth(present, state);
+  while (!turns.empty()) {
+    Model turned(present);
+    State then = state;
+    TissueChange change = turn(turned, then, turns, length_um);
+    const Vectors forces = forces_of(turned, then);
+    const auto opening = [&](const WallTurn& one) { return opening_force(turned, one, then.positions, forces); };
+    if (std::erase_if(turns, [&](const WallTurn& one) { return !(opening(one) > 0); }) > 0) continue;
+    if (turns.empty()) break;
+    const double energy = energy_of(turned, then) - energy_of(present, state);
+    if (!(energy < 0)) {
+      turns.erase(std::ranges::min_element(turns, {}, opening));
+      continue;
+    }
+    model = std::move(turned);
+    state = std::move(then);
+    return ExchangeOutcome{std::move(change), std::move(turns), energy};
+  }
+  return std::nullopt;
+}
+
+}  // namespace plica

@@ -1,0 +1,25 @@
+// Exchange rule of a scenario: which walls may turn after a step.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mechanics/exchange.hpp"
+
+namespace plica {
+
+struct ExchangeRule {
+  std::string region;
+  double below_um = 0;       // mean length of a wall at base and apex that may turn
+  double new_length_um = 0;  // after that
+  double again_after_s = 0;
+};
+
+/// Walls due at the time of the state, the shortest first: shorter than the rule says and shrinking, between cells of
+/// its region that do not grow, with free columns, and not among `State::exchanges.recent`. No two share a cell.
+std::vector<WallTurn> due_exchanges(const Model& model, const State& state, const ExchangeRule& rule);
+
+/// Turn the walls due that forces then lengthen, and count them; empty: none.
+std::optional<ExchangeOutcome> make_exchanges(Model& model, State& state, const ExchangeRule& rule);
+
+}  // namespace plica

@@ -1,0 +1,299 @@
+// Exchange of neighbours by forces: one event, and runs with many.
+#include "mechanics/exchange.hpp"
+
+#include "core/threads.hpp"
+#include "measure/cells.hpp"
+#include "measure/neighbours.hpp"
+#include "mechanics/active/cortex.hpp"
+#include "mechanics/elasticity/corner_barrier.hpp"
+#include "mechanics/elasticity/neo_hookean.hpp"
+#include "mechanics/energy.hpp"
+#include "support/divided.hpp"
+#include "support/prisms.hpp"
+#include "support/ran.hpp"
+#include "support/resumed.hpp"
+#include "support/scenarios.hpp"
+
+namespace {
+
+constexpr double relaxation_s = 60;
+
+CellSet every_cell(const Tissue& tissue) { return CellSet(tissue.cells.size(), true); }
+
+// Soft cells that flow, whose lateral faces pull, and whose other faces hold the sheet flat.
+Model foam(Tissue tissue, double lateral_stiffness = 0) {
+  Model model(std::move(tissue));
+  const Tissue& t = model.tissue;
+  model.stiffness_scale = 0.1;
+  model.laws.push_back(
+      std::make_unique<NeoHookean>(t, std::vector<NeoHookeanMaterial>(t.elements.size(), {0.05, relaxation_s})));
+  model.laws.push_back(std::make_unique<CornerBarrier>(t, 0.03));
+  model.laws.push_back(std::make_unique<Cortex>(t, every_cell(t),
+                                                CortexRule{.side = CellSide::lateral,
+                                                           .tension = 0.5,
+                                                           .stiffness = lateral_stiffness,
+                                                           .relaxation_s = lateral_stiffness > 0 ? relaxation_s : 0}));
+  for (const CellSide side : {CellSide::apical, CellSide::basal})
+    model.laws.push_back(std::make_unique<Cortex>(t, every_cell(t), CortexRule{.side = side, .tension = 0.42}));
+  add_drag(model);
+  return model;
+}
+
+// A sheet of 36 cells whose shapes are far from even.
+Tissue uneven_sheet(unsigned seed = 3, double size = 0.15) {
+  return tissue_from_prisms(irregular_polygons(6, 6, 3.5, 10, size, seed), PolygonSplit::diagonals, 1);
+}
+
+State flowed_state(const Model& model) {
+  State state = rest_state(model);
+  Random random(5);
+  for (Vec3& x : state.positions) x += random.vector(0.1);
+  model.tissue.place_hanging(state.positions);
+  Step step{.positions = state.positions,
+            .previous_positions = state.positions,
+            .previous_velocities = state.velocities,
+            .rate_s = 30,
+            .internals = state.internals};
+  state.internals = next_internals(model, step);
+  return state;
+}
+
+// The shortest of the walls that may turn by forces.
+std::optional<ExchangeOutcome> shortest_turned(Model& model, State& state) {
+  std::vector<WallTurn> turns = possible_turns(model.tissue.sheet);
+  std::ranges::sort(turns, {}, [&](const WallTurn& turn) { return wall_length(model.tissue, turn, state.positions); });
+  for (const WallTurn& turn : turns)
+    if (auto outcome = exchange_neighbours(model, state, {turn}, 0.5)) return outcome;
+  return std::nullopt;
+}
+
+Mat3 without_volume(const Mat3& b) { return b / std::cbrt(b.determinant()); }
+
+Mat3 stretch_of(const Model& model, const State& state, CellId id) {
+  const Cell& cell = model.tissue.cells[id.index()];
+  std::vector<ElementId> elements;
+  for (int e = 0; e < cell.element_count; ++e) elements.emplace_back(cell.first_element.index() + e);
+  return without_volume(*model.laws[0]->elastic_stretch(state.internals[0], state.positions, elements));
+}
+
+TEST(ExchangeOfCells, KeepsTheirMeanElasticStretch) {
+  Model model = foam(uneven_sheet());
+  State state = flowed_state(model);
+  const Model before(model);
+  const State then = state;
+  const auto outcome = shortest_turned(model, state);
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(state.multipliers, then.multipliers);
+  for (std::size_t c = 0; c < model.tissue.cells.size(); ++c) {
+    const Mat3 was = stretch_of(before, then, CellId(c)), is = stretch_of(model, state, CellId(c));
+    EXPECT_LE((was - is).norm(), 1e-9) << c;
+    if (outcome->change.is_remeshed(CellId(c)))
+      EXPECT_GT((was - Mat3::Identity()).norm(), 1e-3);
+    else
+      EXPECT_EQ(model.tissue.cells[c].rest_shape, before.tissue.cells[c].rest_shape);
+  }
+}
+
+TEST(ExchangeOfCells, LeavesCorticesWhatTheyAre) {
+  Model model = foam(uneven_sheet(), 0.2);
+  State state = flowed_state(model);
+  const Model before(model);
+  const State then = state;
+  const auto outcome = shortest_turned(model, state);
+  ASSERT_TRUE(outcome);
+  // Tension beyond the constant 0.5 is elastic: that of the new face is 0, that of others as it was, unless a column
+  // moved.
+  const auto tensions_of = [](const Model& of, const State& at) {
+    const auto& law = dynamic_cast<const Cortex&>(*of.laws[2]);
+    Step step = motionless(at, at.velocities);
+    step.internal = at.internals[2];
+    std::map<std::pair<CellId, CellId>, double> tensions;
+    const std::vector<double> all = law.tensions(step);
+    for (std::size_t f = 0; f < all.size(); ++f)
+      tensions[std::minmax(law.faces()[f].cell, law.faces()[f].beyond.value_or(CellId()))] = all[f] - 0.5;
+    return tensions;
+  };
+  const auto was = tensions_of(before, then), is = tensions_of(model, state);
+  const auto met = std::minmax(outcome->turns[0].behind, outcome->turns[0].ahead);
+  EXPECT_FALSE(was.contains(met));
+  EXPECT_NEAR(is.at(met), 0, 1e-9);
+  int same = 0;
+  for (const auto& [cells, tension] : is) {
+    if (outcome->change.is_remeshed(cells.first) || outcome->change.is_remeshed(cells.second)) continue;
+    if (!cells.first.valid() || !cells.second.valid()) continue;
+    EXPECT_NEAR(tension, was.at(cells), 1e-9);
+    ++same;
+  }
+  EXPECT_GT(same, 20);
+}
+
+TEST(ExchangeOfCells, IsLeftUndoneWhereForcesWouldCloseTheNewFace) {
+  Model model = foam(uneven_sheet());
+  State state = rest_state(model);
+  std::vector<WallTurn> turns = possible_turns(model.tissue.sheet);
+  // A long face: the new one would be drawn together at once.
+  std::ranges::sort(turns, std::greater(),
+                    [&](const WallTurn& turn) { return wall_length(model.tissue, turn, state.positions); });
+  turns.resize(1);
+  const std::uint64_t revision = model.revision;
+  EXPECT_FALSE(exchange_neighbours(model, state, turns, 4));
+  EXPECT_EQ(model.revision, revision);
+  EXPECT_EQ(state.positions, model.tissue.rest_positions);
+}
+
+RunControls controls_until(double end_s, double below_um) {
+  RunControls controls;
+  controls.end_s = end_s;
+  controls.max_step_s = 10;
+  controls.stop_at_equilibrium = false;
+  controls.frame_every_s = 0;
+  controls.scheme.order = TimeOrder::first;
+  controls.exchange = ExchangeRule{"all", below_um, 1.7 * below_um, 5};
+  return controls;
+}
+
+// Looks at every event and at every step.
+struct Watch final : SimulationListener {
+  explicit Watch(const Simulation& of) : run(of) {}
+  void step_accepted(const AcceptedStep& step, const Observation& /*measures*/) override {
+    const Model& model = run.model();
+    volume = std::max(volume, max_volume_error(model, step.state.positions));
+    for (const auto& element : model.tissue.elements)
+      least = std::min(least, hex_scaled_jacobian(gather(step.state.positions, element)));
+  }
+  void cells_divided(const TissueChange& change) override {
+    ++batches;
+    const double energy = run.state().exchanges.energy;
+    highest = std::max(highest, energy - last);
+    last = energy;
+    EXPECT_GE(std::ranges::count(change.remeshed, true), 3);
+    Tissue again = run.model().tissue;
+    again.sheet.connect();
+    EXPECT_EQ(wall_neighbours(again), wall_neighbours(run.model().tissue));
+    EXPECT_NEAR(volume_of_cells(again, run.state().positions) / volume_inside_boundary(again, run.state().positions), 1,
+                1e-12);
+  }
+  const Simulation& run;
+  int batches = 0;
+  double volume = 0, least = 1, last = 0, highest = -std::numeric_limits<double>::infinity();
+};
+
+// A foam that only relaxes: energy falls at each exchange, to first order in the volumes that it disturbs.
+TEST(ExchangeOfCells, LosesEnergyInASheetThatRelaxes) {
+  int events = 0;
+  for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
+    Simulation simulation({std::make_unique<Model>(foam(uneven_sheet(seed, 0.3))), controls_until(240, 1.6)});
+    Watch watch(simulation);
+    simulation.listen(watch);
+    EXPECT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
+    simulation.stop_listening(watch);
+    events += simulation.state().exchanges.count;
+    EXPECT_TRUE(watch.batches == 0 || watch.highest < 0);
+    EXPECT_LE(watch.volume, 1e-9);
+    EXPECT_GT(watch.least, 0);
+    std::cout << simulation.state().exchanges.count << " exchanges in " << simulation.steps() << " steps, "
+              << simulation.state().exchanges.energy << " nN um in all, " << watch.highest
+              << " at most; worst scaled Jacobian " << watch.least << "\n";
+  }
+  EXPECT_GE(events, 5);
+}
+
+// A homogeneous stretch is all by shape, and the sum of both parts is that of the tissue.
+TEST(Neighbours, ShearByShapeIsThatOfAHomogeneousStretch) {
+  const Tissue tissue = tissue_from_prisms(honeycomb(6, 6, 4, 10), PolygonSplit::diagonals, 1);
+  const double before = shape_shear(tissue, tissue.rest_positions);
+  EXPECT_NEAR(before, 0, 1e-12);
+  Vectors positions = tissue.rest_positions;
+  double sum = 0;
+  constexpr int steps = 200;
+  for (int step = 0; step < steps; ++step) {
+    Vectors next = positions;
+    for (Vec3& x : next) x = Vec3(x.x() * std::exp(0.3 / steps), x.y() * std::exp(-0.2 / steps), x.z());
+    sum += shear_between(tissue, positions, next);
+    positions = next;
+  }
+  EXPECT_NEAR(sum, 0.25, 1e-6);
+  EXPECT_NEAR(shape_shear(tissue, positions), 0.25, 1e-9);
+}
+
+const std::string extension = R"(format = 1
+[embryo]
+shape = "sheet"
+length_um = 36
+width_um = 36
+cell_count = 36
+cell_height_um = 10
+[elasticity]
+model = "neo-hookean"
+young_modulus_Pa = 100
+poisson_ratio = 0
+relaxation_min = 1
+[exchange]
+below_um = 0.5
+[cortex.lateral]
+region = "all"
+faces = "lateral"
+tension_mN_per_m = 0.5
+direction = { axis = "along", strongest = 1.6, weakest = 0.4 }
+noise = { spread = 0.8, correlation_s = 60 }
+[cortex.apical]
+region = "all"
+tension_mN_per_m = 0.42
+[cortex.basal]
+region = "all"
+faces = "basal"
+tension_mN_per_m = 0.42
+[time]
+end_min = 3
+max_step_s = 10
+[stop]
+at_equilibrium = false
+[output]
+frame_every_s = 0
+)";
+
+// From memories around events, by the bytes of a checkpoint, and on three threads.
+void expect_resumable(const std::vector<std::string>& overrides) {
+  Simulation whole(scenario_of(extension, overrides));
+  std::vector<RunMemory> memories;
+  struct Tracer final : SimulationListener {
+    Tracer(const Simulation& of, std::vector<RunMemory>& into) : run(of), all(into) {}
+    void step_accepted(const AcceptedStep&, const Observation&) override { all.push_back(run.memory()); }
+    const Simulation& run;
+    std::vector<RunMemory>& all;
+  } tracer(whole, memories);
+  whole.listen(tracer);
+  EXPECT_EQ(whole.run(), RunStatus::end_time) << whole.failure();
+  whole.stop_listening(tracer);
+  const int events = whole.state().exchanges.count;
+  EXPECT_GT(events, 2);
+  std::set<int> seen;
+  int resumed = 0;
+  for (std::size_t k = 1; k + 1 < memories.size(); ++k) {
+    // The last memory before, and the first after each event.
+    if (memories[k].state.exchanges.count == memories[k + 1].state.exchanges.count &&
+        memories[k].state.exchanges.count == memories[k - 1].state.exchanges.count)
+      continue;
+    if (++resumed > 4) break;
+    const ThreadCount scope(resumed % 2 == 0 ? 3 : 1);
+    Simulation fresh(scenario_of(extension, overrides));
+    go_on_by_bytes(fresh, memories[k]);
+    std::vector<RunMemory> rest;
+    Tracer of_fresh(fresh, rest);
+    fresh.listen(of_fresh);
+    fresh.run();
+    fresh.stop_listening(of_fresh);
+    expect_same(fresh.state(), whole.state());
+    EXPECT_EQ(fresh.model().tissue.elements, whole.model().tissue.elements);
+    EXPECT_EQ(fresh.measures().values, whole.measures().values);
+  }
+  EXPECT_GT(resumed, 2);
+  std::cout << events << " exchanges, resumed from " << resumed << " moments\n";
+}
+
+TEST(ExchangeOfCells, GoesOnWithTheSameBits) {
+  expect_resumable({"time.integrator=\"backward-euler\""});
+  expect_resumable({"embryo.periodic=[\"x\",\"y\"]"});
+}
+
+}  // namespace
