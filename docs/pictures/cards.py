@@ -22,6 +22,7 @@ PARTS = {
     "drosophila-paper": [(665, 42, 1000, 384)],
     "drosophila-shape-memory": [(335, 42, 660, 384)],
     "furrow-slice": TIMES,
+    "wave": [(465, 70, 690, 225)],
     "wing-disc": [(590, 45, 900, 520), (505, 540, 985, 655)],
     "xenopus": LAST,
 }
