@@ -51,6 +51,12 @@ def test_gallery(tmp_path, monkeypatch):
     assert 60 < middle < end < 240
 
 
+def test_gradients_page(capsys):
+    names = run_blocks("docs/how-to/gradients.md")
+    assert names["by_cell"].shape == (756,)
+    assert abs(names["np"].exp(names["found"].x) - names["truth"]).max() < 0.02
+
+
 def test_answers_page(tmp_path, monkeypatch):
     """Its blocks, with smooth results made up, since its runs take minutes."""
     for package in ("SALib", "sklearn", "matplotlib"):
