@@ -42,6 +42,16 @@ def test_readme(tmp_path, monkeypatch, capsys):
     assert (tmp_path / "furrow.png").stat().st_size > 1000
 
 
+def test_signals_page(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs/how-to/signals.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"^```toml\n# gradient-bend.toml\n(.*?)^```", page, re.M | re.S)
+    (tmp_path / "gradient-bend.toml").write_text(text)
+    sim = run_blocks("docs/how-to/signals.md")["sim"]
+    kept = sim.cell_data["y_um"] > 0
+    assert sim.time_s == 240 and sim.signals["dpp"][kept].mean() > 1.1 * sim.signals["dpp"][~kept].mean()
+
+
 def test_gallery(tmp_path, monkeypatch):
     """The rule of the gallery makes a wave of contraction from pole to pole."""
     monkeypatch.chdir(tmp_path)
