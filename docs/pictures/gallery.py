@@ -294,6 +294,21 @@ def growing():
     write(figure, "growing")
 
 
+def wave():
+    """A groove that goes along with a signal."""
+    run = result("wave", "wave")
+    figure, axes = new(800, 480)
+    camera = Camera(back=(0.2, -0.85, 0.5), up=(0, 0, 1))
+    for time, height in ((10, 380), (20, 260), (30, 140)):
+        frame = run.frames.at(time)
+        colours = colormaps["YlGnBu"](frame.polygons("apical").cell_data["signal_u"])[:, :3]
+        sheet_picture(axes, frame, at_place((440, height), 2.5), camera, colours=colours, width=0.4)
+        label(axes, (90, height), f"{time} min", size=LETTERS, weight="bold")
+    bar(axes, 60, 34, 50, 2.5)
+    colour_bar(axes, 560, 40, "YlGnBu", 0, 1, "signal", 200)
+    write(figure, "wave")
+
+
 def endless():
     """One period of an endless fold."""
     run = result("endless", scenario_of_page("how-to/sheet.md", "endless"))
@@ -550,7 +565,7 @@ def readme():
         write(names["figure"], "readme", 64)
 
 
-CARDS = {one.__name__: one for one in (closing, measured, living, deep, twist, wing_disc, growing, endless, sphere, ablation, light, division, feedback, labels, phases, report, doors, readme)}
+CARDS = {one.__name__: one for one in (closing, measured, living, deep, twist, wing_disc, growing, wave, endless, sphere, ablation, light, division, feedback, labels, phases, report, doors, readme)}
 
 if __name__ == "__main__":
     for card in sys.argv[2:] or CARDS:

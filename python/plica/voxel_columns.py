@@ -188,6 +188,11 @@ def extended(places: Floats, middles: Floats, joined: Integers) -> Floats:
     return middles + ways
 
 
+def summed(groups: Integers, values: Floats, count: int) -> Floats:
+    """Return the sums of rows of values by group."""
+    return np.column_stack([np.bincount(groups, weights=along, minlength=count).astype(np.float64, copy=False) for along in values.T])
+
+
 class Evened(NamedTuple):
     """Places of corners on both sides, the cells that moved for that, and those that are no upright prism nevertheless."""
 
@@ -206,7 +211,7 @@ def evened(first: Floats, second: Floats, middles: Floats, rings: dict[int, list
     kites = _Kites(rings)
     moved: set[int] = set()
     for _ in range(MOST_EVENINGS):
-        flawed = kites.least_jacobians(*sides, middles) < LEAST_JACOBIAN
+        flawed = kites.least_jacobians(sides[0], sides[1], middles) < LEAST_JACOBIAN
         if not flawed.any():
             break
         moved |= {*kites.cells[flawed].tolist()}
@@ -216,10 +221,9 @@ def evened(first: Floats, second: Floats, middles: Floats, rings: dict[int, list
         usual = kites.stretched(middles)
         for side in sides:
             target = kites.means(side)[kites.of] + (1 - LIKE_MIDDLE) * kites.stretched(side) + LIKE_MIDDLE * usual
-            mean = np.column_stack([np.bincount(corners, weights=along, minlength=len(middles)) for along in target[chosen].T])
-            mean[number > 0] /= number[number > 0, None]
-            side[number > 0] += EVENING * (mean - side)[number > 0]
-    left = kites.least_jacobians(*sides, middles) <= 0
+            moves = summed(corners, target[chosen], len(middles))[number > 0] / number[number > 0, None] - side[number > 0]
+            side[number > 0] += EVENING * moves
+    left = kites.least_jacobians(sides[0], sides[1], middles) <= 0
     return Evened(sides[0], sides[1], sorted(moved), kites.cells[left].tolist())
 
 
@@ -238,15 +242,16 @@ class _Kites:
 
     def means(self, places: Floats) -> Floats:
         """Return the means of the corners of each polygon."""
-        return np.column_stack([np.bincount(self.of, weights=along) for along in places[self.corner].T]) / self.sizes[:, None]
+        means: Floats = summed(self.of, places[self.corner], len(self.cells)) / self.sizes[:, None]
+        return means
 
     def stretched(self, places: Floats) -> Floats:
         """Return corners, from the middle of each polygon, of the nearest stretched regular polygon: the first waves around it."""
         angle = 2 * np.pi * self.place / self.sizes[self.of]
         spokes = places[self.corner] - self.means(places)[self.of]
-        found = np.zeros_like(spokes)
+        found: Floats = np.zeros_like(spokes)
         for wave in (np.cos(angle), np.sin(angle)):
-            part = np.column_stack([np.bincount(self.of, weights=wave * along) for along in spokes.T]) * (2 / self.sizes[:, None])
+            part = summed(self.of, wave[:, None] * spokes, len(self.cells)) * (2 / self.sizes[:, None])
             found += wave[:, None] * part[self.of]
         return found
 
@@ -258,12 +263,11 @@ class _Kites:
             levels.append((self.means(side)[self.of], (corner + corner[self.before]) / 2, corner, (corner + corner[self.after]) / 2))
         points = np.concatenate([*levels[0], *levels[1]])
         spokes = middles[self.corner] - self.means(middles)[self.of]
-        area = np.cross(spokes, spokes[self.after])
-        up = self.means(second) - self.means(first)
-        sign = np.sign((np.column_stack([np.bincount(self.of, weights=along) for along in area.T]) * up).sum(axis=1))
+        area = summed(self.of, np.cross(spokes, spokes[self.after]), len(self.cells))
+        sign = np.sign((area * (self.means(second) - self.means(first))).sum(axis=1))
         nodes = np.arange(8) * len(self.of) + np.arange(len(self.of))[:, None]
         swapped = np.where(sign[self.of, None] > 0, nodes, nodes[:, [0, 3, 2, 1, 4, 7, 6, 5]])
-        least = np.full(len(self.cells), np.inf)
+        least: Floats = np.full(len(self.cells), np.inf)
         np.minimum.at(least, self.of, scaled_jacobians(points, swapped))
         return least
 

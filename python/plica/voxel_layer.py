@@ -56,7 +56,7 @@ def layer_of(numbers: NDArray[Any], sides: Sides, spacing: Floats, volumes: Floa
     for number, side in enumerate((FIRST, SECOND)):
         of = sides.side == side
         places[number] = settled(extended(places[number], middle, joined), rings, sides.faces.select(of), middles[of], sides.normals[of])
-    even = evened(*places, middle, rings)
+    even = evened(places[0], places[1], middle, rings)
     return Layer(even.first, even.second, middle, fitted, columns, rings, even.moved, even.flawed, sides, meetings, width, height, spacing)
 
 

@@ -42,6 +42,16 @@ def test_readme(tmp_path, monkeypatch, capsys):
     assert (tmp_path / "furrow.png").stat().st_size > 1000
 
 
+def test_signals_page(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs/how-to/signals.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"^```toml\n# gradient-bend.toml\n(.*?)^```", page, re.M | re.S)
+    (tmp_path / "gradient-bend.toml").write_text(text)
+    sim = run_blocks("docs/how-to/signals.md")["sim"]
+    kept = sim.cell_data["y_um"] > 0
+    assert sim.time_s == 240 and sim.signals["dpp"][kept].mean() > 1.1 * sim.signals["dpp"][~kept].mean()
+
+
 def test_gallery(tmp_path, monkeypatch):
     """The rule of the gallery makes a wave of contraction from pole to pole."""
     monkeypatch.chdir(tmp_path)
@@ -49,6 +59,12 @@ def test_gallery(tmp_path, monkeypatch):
     begin_s, place_um = names["begin_s"], names["sim"].cell_data["x_um"]
     middle, end = (begin_s[abs(place_um - at) < 20].mean() for at in (0, 100))
     assert 60 < middle < end < 240
+
+
+def test_gradients_page(capsys):
+    names = run_blocks("docs/how-to/gradients.md")
+    assert names["by_cell"].shape == (756,)
+    assert abs(names["np"].exp(names["found"].x) - names["truth"]).max() < 0.02
 
 
 def test_answers_page(tmp_path, monkeypatch):

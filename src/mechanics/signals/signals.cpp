@@ -203,7 +203,7 @@ struct Signals::Chemistry {
 
 std::optional<SignalFailure> Signals::advance(const Tissue& tissue, const Geometry& geometry, double duration_s,
                                               Values& values) const {
-  constexpr int most_parts = 1 << 14;
+  constexpr int most_parts = 1024;
   constexpr double most_change = 0.05;  // of a small change of concentrations, by reactions within a part
   const auto& [volumes_before, volumes, positions] = geometry;
   const std::size_t cells = volumes.size();

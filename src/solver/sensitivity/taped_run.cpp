@@ -30,35 +30,59 @@ Iterate TapedRun::at_end_of(std::size_t n) const {
   return {end.positions, end.multipliers, end.obstacle_forces, end.on_obstacle};
 }
 
-TapedRun replayed(const Model& model, const TapedRun& like, const RunMethod& method) {
-  // Where contacts change, rounding may stop Newton's method before the first of these.
-  std::vector<std::unique_ptr<NewtonStepper>> steppers;
-  for (const double force : {1e-12, 1e-10, 1e-8})
-    steppers.push_back(std::make_unique<NewtonStepper>(
-        model, StepTolerances{.force = force, .constraint = 0.1 * force, .gap_um = 1e-11, .max_iterations = 60},
-        method.linear_method, method.order));
-  State now = rest_state(model);
-  TapedRun run;
-  run.states.push_back(TapedState::of(now));
-  for (std::size_t n = 0; n < like.steps(); ++n) {
-    if (like.rates[n].ahead == 0) now.trend = {};  // a step of first order follows a jump, or is too long
+namespace {
+
+/// Repeats steps with one model, as accurately as rounding allows.
+class Replay {
+ public:
+  Replay(const Model& model, const RunMethod& method) : now_(rest_state(model)) {
+    // Where contacts change, rounding may stop Newton's method before the first of these.
+    for (const double force : {1e-12, 1e-10, 1e-8})
+      steppers_.push_back(std::make_unique<NewtonStepper>(
+          model, StepTolerances{.force = force, .constraint = 0.1 * force, .gap_um = 1e-11, .max_iterations = 60},
+          method.linear_method, method.order));
+    run_.states.push_back(TapedState::of(now_));
+  }
+
+  /// Step to a time, in halves if need be.
+  void go_to(double end_s, bool is_first_order, int halvings = 0) {
+    constexpr int most_halvings = 6;
+    if (is_first_order) now_.trend = {};
     State next;
-    const double end_s = like.states[n + 1].time_s;
     StepReport report;
-    for (const auto& stepper : steppers) {
-      report = stepper->advance(now, end_s - now.time_s, n == 0, next);
-      if (report.converged()) break;
+    for (const auto& stepper : steppers_) {
+      report = stepper->advance(now_, end_s - now_.time_s, run_.steps() == 0, next);
+      if (report.converged()) return accept(end_s, std::move(next));
       stepper->forget_factor();
     }
-    if (!report.converged())
+    if (halvings == most_halvings)
       throw std::runtime_error(
           fmt::format("the step to t = {:g} s, repeated for a gradient, failed: {}", end_s, report.reason()));
-    next.time_s = end_s;
-    run.rates.push_back(rates_of(now, next));
-    run.states.push_back(TapedState::of(next));
-    now = std::move(next);
+    go_to(0.5 * (now_.time_s + end_s), is_first_order, halvings + 1);
+    go_to(end_s, false, halvings + 1);
   }
-  return run;
+  TapedRun run() && { return std::move(run_); }
+
+ private:
+  void accept(double end_s, State next) {
+    next.time_s = end_s;
+    run_.rates.push_back(rates_of(now_, next));
+    run_.states.push_back(TapedState::of(next));
+    now_ = std::move(next);
+  }
+
+  std::vector<std::unique_ptr<NewtonStepper>> steppers_;
+  State now_;
+  TapedRun run_;
+};
+
+}  // namespace
+
+TapedRun replayed(const Model& model, const TapedRun& like, const RunMethod& method) {
+  Replay replay(model, method);
+  for (std::size_t n = 0; n < like.steps(); ++n)
+    replay.go_to(like.states[n + 1].time_s, like.rates[n].ahead == 0);  // after a jump, or of too long a step
+  return std::move(replay).run();
 }
 
 }  // namespace plica

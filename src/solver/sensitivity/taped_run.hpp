@@ -40,7 +40,7 @@ struct RunMethod {
 };
 
 /// Run a model, of the same tissue, through the steps of another run: the same ends and orders, solved as accurately as
-/// rounding allows. Throws std::runtime_error if a step does not converge.
+/// rounding allows, and halved where they do not converge. Throws std::runtime_error if halves do not either.
 TapedRun replayed(const Model& model, const TapedRun& like, const RunMethod& method);
 
 }  // namespace plica

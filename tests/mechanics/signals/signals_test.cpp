@@ -232,10 +232,9 @@ TEST(Signals, SayWhereAReactionHasNoValueAndIsTooFast) {
     return failure ? fmt::format("{} in {}; {}", failure->problem, failure->cell.number(), failure->remedy) : "";
   };
   EXPECT_EQ(failure_of("1 / u"), "the reaction of signal u is not finite in 5; change signal.u.reaction");
-  EXPECT_EQ(
-      failure_of("-1e9 * u^2"),
-      "the reactions of signals are faster than 16384 parts of a step of 1 s resolve in 0; reduce their rates, or "
-      "time.max_step_s");
+  EXPECT_EQ(failure_of("-1e9 * u^2"),
+            "the reactions of signals are faster than 1024 parts of a step of 1 s resolve in 0; reduce their rates, or "
+            "time.max_step_s");
   rule.sources[0] = 1e308;
   EXPECT_EQ(failure_of(""), "signal u is not finite in 0; reduce its sources, or change signal.u.reaction");
 }
