@@ -177,7 +177,6 @@ TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDiv
     std::erase_if(model.growths, [&](const Growth& growth) { return growth.cell == plan.cut.cell; });
   }
 
-  const std::vector<double> volumes_before = model.volumes.volumes(state.positions);
   TissueChange change = divide(model.tissue, cuts, state.time_s, state.positions);
   const Vectors before = std::move(state.positions);
   state.positions = with_new_nodes(model.tissue, change, before);
@@ -191,6 +190,7 @@ TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDiv
       model.growths.push_back(growth);
     }
 
+  const std::vector<double> volumes_before = model.volumes.volumes(before);
   divide_constraints(model, state, change);
   divide_laws(model, state, change, before);
   model.signals = model.signals.after(model.tissue, change);
