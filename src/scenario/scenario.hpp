@@ -261,6 +261,12 @@ struct ExchangeInput {
   std::string region = "all";
 };
 
+/// Cells that leave the sheet once they are small and have three walls.
+struct ExtrusionInput {
+  std::string region;
+  std::optional<double> apical_area_below_um2;
+};
+
 struct TimeInput {
   std::optional<double> step_s;             // empty: "adaptive"
   double first_step_s = 0.05;               // adaptive
@@ -373,6 +379,7 @@ struct Scenario {
   std::map<std::string, PressureInput> pressures;
   std::map<std::string, DivisionInput> divisions;
   ExchangeInput exchange;
+  std::map<std::string, ExtrusionInput> extrusions;
   std::map<std::string, AblationInput> ablations;
   std::map<std::string, ExpectInput> expect;  // keys of summary.json, including monitors
 };

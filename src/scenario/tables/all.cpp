@@ -8,16 +8,17 @@ namespace plica {
 ScenarioTable top_table(), embryo_table(), region_table(), elasticity_table(), region_elasticity_table(),
     volume_table(), vitelline_table(), dynamics_table(), contraction_table(), cortex_table(), enclosed_table(),
     self_contact_table(), hold_table(), pressure_table(), ablation_table(), division_table(), exchange_table(),
-    time_table(), stop_table(), criterion_table(), monitor_table(), measure_table(), furrow_table(), output_table(),
-    expect_table();
+    extrusion_table(), time_table(), stop_table(), criterion_table(), monitor_table(), measure_table(), furrow_table(),
+    output_table(), expect_table();
 
 std::span<const ScenarioTable> scenario_tables() {
   static const std::vector<ScenarioTable> tables = {
-      top_table(),      embryo_table(),       region_table(),   elasticity_table(),  region_elasticity_table(),
-      volume_table(),   vitelline_table(),    dynamics_table(), contraction_table(), cortex_table(),
-      enclosed_table(), self_contact_table(), hold_table(),     pressure_table(),    ablation_table(),
-      division_table(), exchange_table(),     time_table(),     stop_table(),        criterion_table(),
-      monitor_table(),  measure_table(),      furrow_table(),   output_table(),      expect_table()};
+      top_table(),       embryo_table(),       region_table(),    elasticity_table(),  region_elasticity_table(),
+      volume_table(),    vitelline_table(),    dynamics_table(),  contraction_table(), cortex_table(),
+      enclosed_table(),  self_contact_table(), hold_table(),      pressure_table(),    ablation_table(),
+      division_table(),  exchange_table(),     extrusion_table(), time_table(),        stop_table(),
+      criterion_table(), monitor_table(),      measure_table(),   furrow_table(),      output_table(),
+      expect_table()};
   return tables;
 }
 
