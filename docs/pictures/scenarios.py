@@ -230,14 +230,14 @@ def growing_disc():
 
 
 def convergent_extension():
-    """A sheet that narrows and lengthens, from above at four times; 16 cells of a square are marked."""
+    """A sheet that narrows and lengthens, from above at four times; cells of the middle are marked."""
     run = run_of("convergent-extension")
     figure, axes = canvas(WIDTH, 560)
     first = run.frames[0]
     centres = np.array([first.polygons("apical").points[face].mean(axis=0) for face in first.polygons("apical").faces])
     marked = np.all(np.abs(centres[:, :2]) < (11, 11), axis=1)
-    scale = 3.6
-    for (x, y), time in zip(((110, 290), (345, 290), (725, 400), (725, 170)), (0, 10, 20, run.frames[-1].time_min)):
+    scale = 3.4
+    for (x, y), time in zip(((100, 290), (325, 290), (705, 400), (705, 170)), (0, 10, 20, run.frames[-1].time_min)):
         frame = run.frames.at(time)
         colours = np.where(marked[:, None], to_rgb(DAUGHTER), to_rgb("#dfe7ee"))
         outside(axes, frame, colours, ABOVE, (x, y), scale, width=0.8)

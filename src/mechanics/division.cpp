@@ -130,7 +130,7 @@ void divide_obstacles(Model& model, State& state, const TissueChange& change) {
     for (const NodeId node : obstacle->nodes()) place[node] = first++;
     obstacle = obstacle->after_division(model.tissue, change);
     for (const NodeId node : obstacle->nodes()) {
-      const auto known = place.find(node);
+      const auto known = place.find(node.index() < change.kept_nodes() ? change.node_origin[node.index()] : node);
       forces.push_back(known == place.end() ? 0 : state.obstacle_forces[known->second]);
       on_obstacle.push_back(known == place.end() ? 0 : state.on_obstacle[known->second]);
     }

@@ -59,7 +59,7 @@ double opening_force(const Model& model, const WallTurn& turn, const Vectors& po
   return sum;
 }
 
-// Both columns of a wall go on with their mean velocity, and without acceleration; pressures start anew.
+// Both columns of a wall take their mean velocity, without acceleration; pressures are taken as constant.
 void follow_trend(const Model& model, const TissueChange& change, std::span<const WallTurn> turns, State& state) {
   State::Trend& trend = state.trend;
   for (const WallTurn& turn : turns) {
@@ -78,6 +78,39 @@ void follow_trend(const Model& model, const TissueChange& change, std::span<cons
   }
   for (Vectors* vectors : {&state.velocities, &trend.mean_velocities, &trend.accelerations})
     if (!vectors->empty()) *vectors = with_new_nodes(model.tissue, change, *vectors);
+}
+
+// Number of a former free node; invalid where it is no more.
+NodeId now(const TissueChange& change, NodeId before) {
+  const auto found = std::ranges::lower_bound(change.node_origin, before);
+  return found == change.node_origin.end() || *found != before
+             ? NodeId()
+             : NodeId(static_cast<std::size_t>(found - change.node_origin.begin()));
+}
+
+// The column that is left of a cell takes the mean velocity.
+void join_velocities(const Sheet& sheet, CellId cell, Vectors& velocities) {
+  const std::vector<Stop>& ring = sheet.cells[cell.index()].ring;
+  const std::vector<NodeId>& kept = column(sheet, ring[0].vertex);
+  for (std::size_t level = 0; level < kept.size(); ++level) {
+    Vec3 sum = Vec3::Zero();
+    for (const Stop& stop : ring) sum += velocities[column(sheet, stop.vertex)[level].index()] / 3;
+    velocities[kept[level].index()] = sum;
+  }
+}
+
+// What is known by numbers of cells and nodes.
+void renumber(const TissueChange& change, Model& model, Exchanges& exchanges) {
+  std::erase_if(model.growths, [&](Growth& growth) {
+    const auto found = std::ranges::lower_bound(change.origin, growth.cell);
+    if (found == change.origin.end() || *found != growth.cell) return true;
+    growth.cell = CellId(static_cast<std::size_t>(found - change.origin.begin()));
+    return false;
+  });
+  std::erase_if(exchanges.recent, [&](Exchanges::Turned& one) {
+    one.begin = now(change, one.begin), one.end = now(change, one.end);
+    return !one.begin.valid() || !one.end.valid();
+  });
 }
 
 TissueChange turn(Model& model, State& state, std::vector<WallTurn>& turns, double length_um) {
@@ -118,6 +151,32 @@ std::optional<ExchangeOutcome> exchange_neighbours(Model& model, State& state, s
     return ExchangeOutcome{std::move(change), std::move(turns), energy};
   }
   return std::nullopt;
+}
+
+std::optional<ExtrusionOutcome> extrude_cells(Model& model, State& state, std::vector<CellId> cells) {
+  if (cells.empty()) return std::nullopt;
+  Model without(model);
+  State then = state;
+  settle_growth(without, state);
+  std::vector<Mat3> inverse;
+  for (std::size_t c = 0; c < without.tissue.cells.size(); ++c) inverse.push_back(unstretch(without, state, CellId(c)));
+  const std::vector<double> volumes = without.volumes.volumes(state.positions);
+  const Sheet before = without.tissue.sheet;
+  ExtrusionOutcome outcome;
+  outcome.change = take_out(without.tissue, cells, then.positions, [&](CellId cell) { return inverse[cell.index()]; });
+  if (cells.empty()) return std::nullopt;
+  for (const CellId cell : cells) {
+    join_velocities(before, cell, then.velocities);
+    outcome.volume_um3 += volumes[cell.index()];
+  }
+  outcome.count = static_cast<int>(cells.size());
+  then.velocities = with_new_nodes(without.tissue, outcome.change, then.velocities);
+  then.trend = {};
+  renumber(outcome.change, without, then.exchanges);
+  follow_change(without, then, outcome.change, state.positions);
+  model = std::move(without);
+  state = std::move(then);
+  return outcome;
 }
 
 }  // namespace plica

@@ -1,5 +1,5 @@
-// Exchange of neighbours between steps: walls turn where forces then lengthen them. Topology: tissue/exchange.hpp.
-// Theory: docs/theory/exchange.md.
+// Exchange of neighbours and extrusion between steps: walls turn where forces then lengthen them, cells leave.
+// Topology: tissue/exchange.hpp, tissue/extrusion.hpp. Theory: docs/theory/exchange.md.
 #pragma once
 
 #include <optional>
@@ -7,6 +7,7 @@
 
 #include "mechanics/model.hpp"
 #include "tissue/exchange.hpp"
+#include "tissue/extrusion.hpp"
 
 namespace plica {
 
@@ -22,5 +23,15 @@ struct ExchangeOutcome {
 /// percent; the next step restores them.
 std::optional<ExchangeOutcome> exchange_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
                                                    double length_um);
+
+struct ExtrusionOutcome {
+  TissueChange change;
+  int count = 0;
+  double volume_um3 = 0;  // of the cells that have left
+};
+
+/// Take out those of the cells, which can leave and share no neighbour, whose neighbours get good elements; empty:
+/// none. The neighbours fill the place in the next step; their rest shapes are as after an exchange.
+std::optional<ExtrusionOutcome> extrude_cells(Model& model, State& state, std::vector<CellId> cells);
 
 }  // namespace plica

@@ -96,7 +96,7 @@ void for_held_constraints(const Model& model, const Body& body) {
   }
 }
 
-/// Exchanges of neighbours so far.
+/// Exchanges of neighbours and extrusions so far.
 struct Exchanges {
   struct Turned {
     NodeId begin, end;  // basal; free
@@ -108,8 +108,12 @@ struct Exchanges {
   double energy = 0;           // nN um: change of energy at these events (mechanics/exchange.hpp)
   double shear = 0;            // of the tissue, with and without exchanges (measure/neighbours.hpp)
   std::vector<Turned> recent;  // walls that must not turn back yet
+  int extruded = 0;            // cells that have left
+  double extruded_um3 = 0;     // their volumes then
 
-  static auto parts(auto& all) { return std::tie(all.until_s, all.count, all.energy, all.shear, all.recent); }
+  static auto parts(auto& all) {
+    return std::tie(all.until_s, all.count, all.energy, all.shear, all.recent, all.extruded, all.extruded_um3);
+  }
 };
 
 /// State of the body. RunMemory holds what a run also needs to continue bitwise identically.

@@ -1,5 +1,6 @@
 #include "mechanics/model_memory.hpp"
 
+#include <map>
 #include <set>
 #include <utility>
 
@@ -17,7 +18,7 @@ void require(bool fits) {
 
 // Bounds the size of the mesh before it is made: a sheet has fewer elements than nodes.
 Tissue restored(const Tissue& initial, const ModelMemory& memory, const TissueChange& change, std::size_t nodes) {
-  require(!why_unchangeable(initial) && memory.rest_positions.size() >= initial.free_node_count());
+  require(!why_unchangeable(initial));
   require(memory.sheet.cells.size() == change.origin.size() &&
           is_consistent(memory.sheet, memory.rest_positions.size(), initial.is_periodic()));
   Tissue tissue = initial;
@@ -73,13 +74,18 @@ ModelMemory memory_of(const Model& model, std::vector<CellId> origin) {
 }
 
 TissueChange change_of(const ModelMemory& memory, const Tissue& initial) {
-  const std::size_t before = initial.cells.size();
-  require(memory.origin.size() >= before && memory.origin.size() == memory.cells.size());
+  require(memory.origin.size() == memory.cells.size());
   TissueChange change = no_change(initial);
   change.origin = memory.origin;
+  std::map<CellId, CellId> first;   // of the cells of one origin
+  std::map<int, CellId> of_mother;  // origin of its daughters
   for (std::size_t c = 0; c < memory.origin.size(); ++c) {
-    require(c < before ? memory.origin[c] == CellId(c) : memory.origin[c].is_among(before));
-    if (c >= before) change.daughters.push_back({memory.origin[c], CellId(c)});
+    require(memory.origin[c].is_among(initial.cells.size()));
+    const Lineage& lineage = memory.cells[c].lineage;
+    require(lineage.mother < 0 ? lineage.id == initial.cells[memory.origin[c].index()].lineage.id
+                               : of_mother.emplace(lineage.mother, memory.origin[c]).first->second == memory.origin[c]);
+    const auto [known, is_new] = first.emplace(memory.origin[c], CellId(c));
+    if (!is_new) change.daughters.push_back({known->second, CellId(c)});
   }
   return change;
 }

@@ -293,6 +293,12 @@ struct ExchangeInput {
   std::string region = "all";
 };
 
+/// Cells that leave the sheet once they are small and have three walls.
+struct ExtrusionInput {
+  std::string region;
+  std::optional<double> apical_area_below_um2;
+};
+
 struct TimeInput {
   std::optional<double> step_s;             // empty: "adaptive"
   double first_step_s = 0.05;               // adaptive
@@ -416,6 +422,7 @@ struct Scenario {
   std::map<std::string, DivisionInput> divisions;
   std::map<std::string, GrowthInput> growths;
   ExchangeInput exchange;
+  std::map<std::string, ExtrusionInput> extrusions;
   std::map<std::string, AblationInput> ablations;
   std::map<std::string, ExpectInput> expect;  // keys of summary.json, including monitors
 };

@@ -309,7 +309,10 @@ StopRule make_stop_rule(const Scenario& scenario) {
 }
 
 void begin_sets(const Scenario& scenario, const Model& model, KeptBySet& kept, std::vector<Diagnostic>& errors) {
-  const Subject subject{model, make_furrow_sites(scenario, model.tissue), have_furrow(axes_of(scenario.embryo)),
+  // Places of a furrow do not follow cells that leave.
+  FurrowSites sites;
+  if (scenario.extrusions.empty()) sites = make_furrow_sites(scenario, model.tissue);
+  const Subject subject{model, std::move(sites), have_furrow(axes_of(scenario.embryo)),
                         method_of(scenario.volume) == VolumeMethod::projection, scenario.exchange.below_um};
   const auto is_given = [&](std::string_view name) { return std::ranges::count(scenario.measure.sets, name) > 0; };
   for (const MeasureSet& set : measure_sets()) {

@@ -30,6 +30,7 @@ struct RunControls {
   std::vector<double> program_jumps_s;   // jumps of forces: fixed steps end on them, too
   std::vector<DivisionRule> divisions;   // their times are program points
   std::optional<ExchangeRule> exchange;
+  std::vector<ExtrusionRule> extrusions;
 };
 
 /// Controls of a scenario. The simulation adds the points of the activity time courses of its laws.

@@ -60,7 +60,6 @@ std::vector<WallTurn> due_exchanges(const Model& model, const State& state, cons
 
 std::optional<ExchangeOutcome> make_exchanges(Model& model, State& state, const ExchangeRule& rule) {
   Exchanges& exchanges = state.exchanges;
-  if (exchanges.until_s == state.time_s) return std::nullopt;
   exchanges.until_s = state.time_s;
   std::erase_if(exchanges.recent,
                 [&](const Exchanges::Turned& one) { return has_come(one.time_s + rule.again_after_s, state.time_s); });
@@ -73,6 +72,34 @@ std::optional<ExchangeOutcome> make_exchanges(Model& model, State& state, const 
   for (const WallTurn& turn : outcome->turns)
     state.exchanges.recent.push_back(
         {column(sheet, turn.begin).front(), column(sheet, turn.end).front(), state.time_s});
+  return outcome;
+}
+
+std::optional<ExtrusionOutcome> make_extrusions(Model& model, State& state, std::span<const ExtrusionRule> rules) {
+  if (rules.empty()) return std::nullopt;
+  const Tissue& tissue = model.tissue;
+  const std::vector<double> areas = face_areas(tissue, CellSide::apical, state.positions);
+  std::vector<CellId> due;
+  CellSet taken(tissue.cells.size(), false);
+  for (const ExtrusionRule& rule : rules)
+    for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+      const CellId cell(c);
+      if (!tissue.regions.at(rule.region)[c] || !(areas[c] < rule.below_um2) || !can_leave(tissue.sheet, cell))
+        continue;
+      std::vector<CellId> about = {cell};
+      bool is_held = false;
+      for (const Stop& stop : tissue.sheet.cells[c].ring) {
+        about.push_back(tissue.sheet.walls[stop.wall.index()].beyond(cell));
+        is_held |= !is_free(model, stop.vertex);
+      }
+      if (is_held || std::ranges::any_of(about, [&](CellId one) { return taken[one.index()]; })) continue;
+      for (const CellId one : about) taken[one.index()] = true;
+      due.push_back(cell);
+    }
+  std::optional<ExtrusionOutcome> outcome = extrude_cells(model, state, std::move(due));
+  if (!outcome) return std::nullopt;
+  state.exchanges.extruded += outcome->count;
+  state.exchanges.extruded_um3 += outcome->volume_um3;
   return outcome;
 }
 

@@ -1,4 +1,4 @@
-// Exchange rule of a scenario: which walls may turn after a step.
+// Exchange and extrusion rules of a scenario: which walls may turn after a step, which cells leave.
 #pragma once
 
 #include <string>
@@ -15,11 +15,19 @@ struct ExchangeRule {
   double again_after_s = 0;
 };
 
+struct ExtrusionRule {
+  std::string region;
+  double below_um2 = 0;  // apical area of a cell that leaves
+};
+
 /// Walls due at the time of the state, the shortest first: shorter than the rule says and shrinking, between cells of
 /// its region that do not grow, with free columns, and not among `State::exchanges.recent`. No two share a cell.
 std::vector<WallTurn> due_exchanges(const Model& model, const State& state, const ExchangeRule& rule);
 
 /// Turn the walls due that forces then lengthen, and count them; empty: none.
 std::optional<ExchangeOutcome> make_exchanges(Model& model, State& state, const ExchangeRule& rule);
+
+/// Take out the cells of these regions that are small and have come down to three walls, and count them; empty: none.
+std::optional<ExtrusionOutcome> make_extrusions(Model& model, State& state, std::span<const ExtrusionRule> rules);
 
 }  // namespace plica

@@ -256,10 +256,12 @@ void Simulation::divide(const std::vector<PlannedDivision>& due) {
   adopt(change);
 }
 
-// Turn short walls. Motion goes on, and so do steps.
+// Turn short walls and take out cells, once after a step. After exchanges, motion and length of steps continue.
 void Simulation::exchange() {
   if (!controls_.exchange || status() != RunStatus::under_way) return;
+  if (now_.state.exchanges.until_s == now_.state.time_s) return;
   if (const auto outcome = make_exchanges(*model_, now_.state, *controls_.exchange)) adopt(outcome->change);
+  if (const auto outcome = make_extrusions(*model_, now_.state, controls_.extrusions)) adopt(outcome->change);
 }
 
 // Follow a change of the model and the state.

@@ -63,7 +63,8 @@ class Simulation {
   ~Simulation();
 
   /// Take the next step, shortened until it is accepted, to `until_s` at most; then make the divisions and
-  /// exchanges due. Returns false if the run has ended, the step failed or was stopped, or the time is `until_s` already.
+  /// exchanges due. Returns false if the run has ended, the step failed or was stopped, or the time is `until_s`
+  /// already.
   bool step(double until_s = std::numeric_limits<double>::infinity());
 
   /// Take steps to exactly `time_s`, or until the run ends, fails or is stopped.

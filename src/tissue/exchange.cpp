@@ -2,22 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <set>
 
 #include "tissue/division.hpp"
-#include "tissue/mesher.hpp"
-#include "tissue/polygon_cell.hpp"
 
 namespace plica {
 namespace {
-
-constexpr double least_quality = 0.02;  // scaled Jacobian of new elements
-
-VertexId original_of(const Sheet& sheet, VertexId vertex) {
-  const VertexId its = sheet.vertices[vertex.index()].original;
-  return its.valid() ? its : vertex;
-}
 
 std::size_t stop_of(const Polygon& polygon, WallId wall) {
   return static_cast<std::size_t>(std::ranges::find(polygon.ring, wall, &Stop::wall) - polygon.ring.begin());
@@ -81,46 +71,25 @@ class Turns {
   std::vector<char> is_at_rim_;
 };
 
-// Where a vertex is in a periodic tissue, from the place of its original.
-Vec3 shift_of(const Tissue& tissue, VertexId vertex) {
-  const auto& [x, y, z] = tissue.sheet.vertices[vertex.index()].periods;
-  return tissue.period.cwiseProduct(Vec3(x, y, z));
-}
-
-Vec3 place_of(const Tissue& tissue, VertexId vertex, std::size_t level, std::span<const Vec3> positions) {
-  return positions[column(tissue.sheet, vertex)[level].index()] + shift_of(tissue, vertex);
-}
-
 // Turns one wall after the other in the sheet.
 class Turner {
  public:
-  Turner(Tissue& tissue, Vectors& positions, double length_um)
-      : tissue_(tissue), sheet_(tissue.sheet), positions_(positions), length_um_(length_um) {}
+  Turner(Tissue& tissue, Vectors& positions, double length_um, const Unstretch& unstretch)
+      : tissue_(tissue),
+        sheet_(tissue.sheet),
+        positions_(positions),
+        length_um_(length_um),
+        remesher_(tissue, positions, unstretch) {}
 
   // Whether the cells have good elements afterwards; if not, all is as it was.
-  bool turn(const WallTurn& turn, const std::function<Mat3(CellId)>& unstretch) {
-    const Wall wall = sheet_.walls[turn.wall.index()];
-    std::vector<std::pair<CellId, Polygon>> polygons;
-    for (const CellId cell : turn.cells())
-      if (cell.valid()) polygons.emplace_back(cell, sheet_.cells[cell.index()]);
-    std::vector<std::pair<NodeId, Vec3>> places;
-    for (const VertexId vertex : {turn.begin, turn.end})
-      for (const NodeId node : column(sheet_, vertex)) places.emplace_back(node, positions_[node.index()]);
-
+  bool turn(const WallTurn& turn) {
+    const Wall before = sheet_.walls[turn.wall.index()];
+    remesher_.begin(turn.cells(), std::array{turn.begin, turn.end});
     turn_rings(turn);
     move_columns(turn);
-    if (std::ranges::all_of(polygons, [&](const auto& one) { return take_split(one.first, unstretch(one.first)); }))
-      return true;
-    sheet_.walls[turn.wall.index()] = wall;
-    for (auto& [cell, polygon] : polygons) sheet_.cells[cell.index()] = std::move(polygon);
-    for (const auto& [node, place] : places) positions_[node.index()] = place;
+    if (remesher_.finish()) return true;
+    sheet_.walls[turn.wall.index()] = before;
     return false;
-  }
-
-  void take_rest_shape(CellId id, const Mat3& unstretch) {
-    Cell& cell = tissue_.cells[id.index()];
-    cell.rest_shape = corners(id);
-    for (Vec3& corner : cell.rest_shape) corner = unstretch * corner;
   }
 
  private:
@@ -132,9 +101,6 @@ class Turner {
     if (turn.ahead.valid()) insert(turn.ahead, turn.end, turn.begin, turn.wall);
     sheet_.walls[turn.wall.index()].cells = {turn.ahead.valid() ? turn.ahead : turn.behind,
                                              turn.ahead.valid() ? turn.behind : CellId()};
-    for (const CellId cell : turn.cells())
-      if (cell.valid())
-        for (Stop& stop : sheet_.cells[cell.index()].ring) stop.at = 0;
   }
 
   // Take the wall from a ring, with the vertex at its end.
@@ -153,18 +119,7 @@ class Turner {
     std::array<int, 3> periods = sheet_.vertices[other.index()].periods;
     for (int axis = 0; axis < 3; ++axis)
       periods[axis] += sheet_.vertices[at->vertex.index()].periods[axis] - sheet_.vertices[own.index()].periods[axis];
-    ring.insert(at, Stop{image(original_of(sheet_, other), periods), wall, 0});
-  }
-
-  VertexId image(VertexId original, const std::array<int, 3>& periods) {
-    if (periods == std::array<int, 3>{}) return original;
-    const auto known = std::ranges::find_if(sheet_.vertices, [&](const Vertex& vertex) {
-      return vertex.original == original && vertex.periods == periods;
-    });
-    if (known != sheet_.vertices.end()) return VertexId(static_cast<std::size_t>(known - sheet_.vertices.begin()));
-    const std::size_t levels = sheet_.vertices[original.index()].nodes.size();
-    sheet_.vertices.push_back({std::vector<NodeId>(levels), original, periods});
-    return VertexId(sheet_.vertices.size() - 1);
+    ring.insert(at, Stop{remesher_.image(original_of(sheet_, other), periods), wall, 0});
   }
 
   void move_columns(const WallTurn& turn) {
@@ -185,30 +140,11 @@ class Turner {
     }
   }
 
-  [[nodiscard]] std::vector<Vec3> corners(CellId cell) const {
-    std::vector<Vec3> corners;
-    for (const std::size_t level : {std::size_t{0}, sheet_.level_count(cell)})
-      for (const Stop& stop : sheet_.cells[cell.index()].ring)
-        corners.push_back(place_of(tissue_, stop.vertex, level, positions_));
-    return corners;
-  }
-
-  bool take_split(CellId cell, const Mat3& unstretch) {
-    const std::vector<Vec3> now = corners(cell);
-    std::vector<Vec3> rest = now;
-    for (Vec3& corner : rest) corner = unstretch * corner;
-    const auto quality = [&](const std::vector<OutlineQuad>& split) {
-      return std::min(worst_part(prism_of(now), split), worst_part(prism_of(rest), split));
-    };
-    Polygon& polygon = sheet_.cells[cell.index()];
-    polygon.quadrilaterals = best_split(corners_of_polygon(polygon.ring.size()), quality);
-    return quality(polygon.quadrilaterals) > least_quality;
-  }
-
   Tissue& tissue_;
   Sheet& sheet_;
   Vectors& positions_;
   double length_um_;
+  Remesher remesher_;
 };
 
 }  // namespace
@@ -234,10 +170,6 @@ std::vector<WallTurn> possible_turns(const Sheet& sheet) {
   return possible;
 }
 
-const std::vector<NodeId>& column(const Sheet& sheet, VertexId vertex) {
-  return sheet.vertices[original_of(sheet, vertex).index()].nodes;
-}
-
 Vec3 wall_vector(const Tissue& tissue, const WallTurn& turn, std::size_t level, std::span<const Vec3> positions) {
   return place_of(tissue, turn.end, level, positions) - place_of(tissue, turn.begin, level, positions);
 }
@@ -248,30 +180,19 @@ double wall_length(const Tissue& tissue, const WallTurn& turn, std::span<const V
 }
 
 TissueChange turn_walls(Tissue& tissue, std::vector<WallTurn>& turns, double length_um, Vectors& positions,
-                        const std::function<Mat3(CellId)>& unstretch) {
+                        const Unstretch& unstretch) {
   TissueChange change = no_change(tissue);
   change.remeshed.assign(tissue.cells.size(), false);
-  Turner turner(tissue, positions, length_um);
-  std::erase_if(turns, [&](const WallTurn& turn) { return !turner.turn(turn, unstretch); });
-  std::vector<std::pair<CellId, double>> volumes;
+  std::vector<double> volumes;
+  for (const Cell& cell : tissue.cells) volumes.push_back(rest_volume(tissue, cell));
+  Turner turner(tissue, positions, length_um, unstretch);
+  std::erase_if(turns, [&](const WallTurn& turn) { return !turner.turn(turn); });
   for (const WallTurn& turn : turns) {
     change.wall_origin[turn.wall.index()] = {};
-    for (const CellId cell : turn.cells()) {
-      if (!cell.valid()) continue;
-      change.remeshed[cell.index()] = true;
-      volumes.emplace_back(cell, rest_volume(tissue, tissue.cells[cell.index()]));
-      turner.take_rest_shape(cell, unstretch(cell));
-    }
+    for (const CellId cell : turn.cells())
+      if (cell.valid()) change.remeshed[cell.index()] = true;
   }
-  complete(tissue, change);
-  for (const auto& [id, volume] : volumes) {
-    Cell& cell = tissue.cells[id.index()];
-    const double factor = std::cbrt(volume / rest_volume(tissue, cell));
-    for (Vec3& corner : cell.rest_shape) corner *= factor;
-    set_element_rest_shapes(tissue, id);
-  }
-  positions.resize(tissue.node_count(), Vec3::Zero());
-  tissue.place_hanging_positions(positions);
+  complete_remeshed(tissue, change, unstretch, volumes, positions);
   return change;
 }
 

@@ -2,13 +2,12 @@
 // part and those at its ends meet. Nodes stay; the rings of four cells change, and those cells get new elements.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "tissue/tissue_change.hpp"
+#include "tissue/remesher.hpp"
 
 namespace plica {
 
@@ -29,9 +28,6 @@ std::optional<std::string> why_unturnable(const Tissue& tissue);
 /// part keep three sides, and do not part where both lie at a rim; those that meet do not touch elsewhere.
 std::vector<WallTurn> possible_turns(const Sheet& sheet);
 
-/// Return the free nodes of a vertex, from base to apex: of its original, if it is an image.
-const std::vector<NodeId>& column(const Sheet& sheet, VertexId vertex);
-
 /// Return the vector from begin to end of a wall on a level: 0 at the base.
 Vec3 wall_vector(const Tissue& tissue, const WallTurn& turn, std::size_t level, std::span<const Vec3> positions);
 
@@ -43,6 +39,6 @@ double wall_length(const Tissue& tissue, const WallTurn& turn, std::span<const V
 /// shape of a cell about a wall is its present one, mapped by `unstretch`, with the volume it had; its stops become
 /// corners. Reference positions of nodes stay, and mean nothing for the cells that have changed.
 TissueChange turn_walls(Tissue& tissue, std::vector<WallTurn>& turns, double length_um, Vectors& positions,
-                        const std::function<Mat3(CellId)>& unstretch);
+                        const Unstretch& unstretch);
 
 }  // namespace plica

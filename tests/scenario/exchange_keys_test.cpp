@@ -32,6 +32,10 @@ TEST(ExchangeKeys, SayWhatWouldBeRight) {
       {exchanging + "[volume]\nmethod = \"none\"\n[time]\nscheme = \"linearly-implicit\"\nstep_s = 1",
        "14: time.scheme: the paper's algorithm is not possible beside [exchange]; set time.scheme to \"newton\" and "
        "volume.method to \"coupled\", or remove [exchange]"},
+      {soft_sheet + "[extrusion.a]\nregion = \"all\"\napical_area_below_um2 = 5",
+       "9: extrusion.a: cells lose neighbours only by exchange; add [exchange] with below_um"},
+      {exchanging + "[extrusion.a]\nregion = \"all\"",
+       "11: extrusion.a.apical_area_below_um2: is missing; set apical_area_below_um2 to a number > 0"},
       {lateral_cortex + "tension_mN_per_m = 1\nnoise = { spread = 0.5 }",
        "5: cortex.a.noise.correlation_s: is missing; set it to the time in which tensions change, such as 120"},
       {lateral_cortex + "tension_mN_per_m = 1\nnoise = { correlation_s = 5 }",

@@ -116,6 +116,7 @@ Checkpoint marked(Checkpoint checkpoint) {
   run.outside_arrays = {{"signal", {0.5, 2}}, {"time of birth", {1, 3}}};
   run.whole_internals = {{6}, {7, 8}, {}};
   run.growth_ends_s = {9, 10};
+  run.state.exchanges = {12, 3, -4.5, 0.25, {{NodeId(1), NodeId(2), 11}}, 2, 6.5};
   run.state.trend.step_s = 0.75;
   run.state.trend.earlier_s = 0.125;
   run.state.trend.mean_velocities = run.state.trend.accelerations = {Vec3(1, 2, 3), Vec3(-4, 5, 6)};

@@ -3,6 +3,7 @@
 
 #include "support/divided.hpp"
 #include "support/prisms.hpp"
+#include "tissue/extrusion.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
 #include "tissue/shapes/polygon_sheet.hpp"
 
@@ -31,7 +32,6 @@ void expect_symmetric(const Tissue& tissue) {
     }
   Tissue again = tissue;
   again.sheet.connect();
-  EXPECT_EQ(again.sheet.walls.size(), tissue.sheet.walls.size());
   EXPECT_EQ(pairs_of(again), pairs_of(tissue));
 }
 
@@ -254,6 +254,86 @@ TEST(Exchange, IsRefusedWhereItHasNoRule) {
   EXPECT_TRUE(possible_turns(tissue_from_prisms(honeycomb(2, 1, 8, 20), PolygonSplit::diagonals, 1).sheet).empty());
   const BlockShape four{.length_um = 40, .width_um = 40, .cell_height_um = 40, .cells = {2, 2, 1}};
   EXPECT_TRUE(possible_turns(build_block(four).sheet).empty());
+}
+
+// Turns walls of the cell until three are left.
+void bring_to_three_walls(Tissue& tissue, CellId cell, Vectors& positions) {
+  while (tissue.cells[cell.index()].sides() > 3) {
+    std::vector<WallTurn> turns = possible_turns(tissue.sheet);
+    std::erase_if(turns, [&](const WallTurn& turn) { return turn.left != cell && turn.right != cell; });
+    ASSERT_FALSE(turns.empty());
+    turns.resize(1);
+    turned(tissue, turns, 3, positions);
+    ASSERT_EQ(turns.size(), 1u);
+    smooth(tissue, positions);
+  }
+}
+
+TEST(Extrusion, ClosesTheSheetOverTheCell) {
+  for (const int layers : {1, 2}) {
+    Tissue tissue = tissue_from_prisms(honeycomb(7, 7, 8, 20), PolygonSplit::diagonals, layers);
+    tissue.regions["some"] = CellSet(49, false);
+    for (const std::size_t c : {23, 24, 25}) tissue.regions["some"][c] = true;
+    Vectors positions = tissue.rest_positions;
+    const CellId cell(24);
+    EXPECT_FALSE(can_leave(tissue.sheet, cell));
+    bring_to_three_walls(tissue, cell, positions);
+    ASSERT_TRUE(can_leave(tissue.sheet, cell));
+    const Tissue before = tissue;
+    std::vector<CellId> about, leaving = {cell};
+    for (const Stop& stop : tissue.sheet.cells[24].ring)
+      about.push_back(tissue.sheet.walls[stop.wall.index()].beyond(cell));
+    const TissueChange change = take_out(tissue, leaving, positions, as_it_is);
+    ASSERT_EQ(leaving.size(), 1u);
+    EXPECT_EQ(tissue.cells.size(), 48u);
+    EXPECT_EQ(tissue.free_node_count(), before.free_node_count() - 2 * (static_cast<std::size_t>(layers) + 1));
+    EXPECT_EQ(change.node_origin.size(), tissue.free_node_count());
+    EXPECT_EQ(change.origin.size(), 48u);
+    EXPECT_EQ(std::ranges::count(change.origin, cell), 0);
+    EXPECT_EQ(std::ranges::count(tissue.regions.at("some"), true), 2);
+    expect_symmetric(tissue);
+    EXPECT_NEAR(volume_of_cells(tissue, positions) / volume_inside_boundary(tissue, positions), 1, 1e-13);
+    EXPECT_GT(worst_quality(tissue, change, positions), 0);
+    for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+      const CellId was = change.origin[c];
+      const bool is_beside = std::ranges::count(about, was) > 0;
+      EXPECT_EQ(change.remeshed[c], is_beside);
+      EXPECT_EQ(tissue.cells[c].sides() + (is_beside ? 1 : 0), before.cells[was.index()].sides());
+      EXPECT_EQ(tissue.cells[c].lineage.id, before.cells[was.index()].lineage.id);
+      EXPECT_NEAR(rest_volume(tissue, tissue.cells[c]) / rest_volume(before, before.cells[was.index()]), 1, 1e-12);
+    }
+    // Each pair of the three still meets, now at one vertex.
+    const auto pairs = pairs_of(tissue);
+    const auto now = [&](CellId was) {
+      return CellId(static_cast<std::size_t>(std::ranges::find(change.origin, was) - change.origin.begin()));
+    };
+    for (const std::size_t i : {0, 1, 2})
+      EXPECT_TRUE(pairs.contains(std::minmax(now(about[i]), now(about[(i + 1) % 3]))));
+    for (std::size_t n = 0; n < tissue.free_node_count(); ++n)
+      EXPECT_EQ(tissue.rest_positions[n], before.rest_positions[change.node_origin[n].index()]);
+  }
+}
+
+// Where an image of a vertex is a corner, too.
+TEST(Extrusion, FillsAPeriodicSheet) {
+  const SheetShape shape{.length_um = 60, .width_um = 50, .is_periodic = {true, true}};
+  int count = 0;
+  for (const std::size_t c : {0, 7, 19, 31}) {
+    Tissue tissue = build_sheet(shape, 60, 1, cells_of_diagonals);
+    Vectors positions = tissue.rest_positions;
+    bring_to_three_walls(tissue, CellId(c), positions);
+    if (!can_leave(tissue.sheet, CellId(c))) continue;
+    std::vector<CellId> leaving = {CellId(c)};
+    take_out(tissue, leaving, positions, as_it_is);
+    if (leaving.empty()) continue;
+    ++count;
+    expect_symmetric(tissue);
+    Random random(2);
+    for (Vec3& x : positions) x += random.vector(0.1).cwiseProduct(Vec3(1, 1, 0));
+    tissue.place_hanging_positions(positions);
+    EXPECT_NEAR(volume_of_cells(tissue, positions), 60 * 50 * 10, 1e-8);
+  }
+  EXPECT_GE(count, 3);
 }
 
 }  // namespace

@@ -351,9 +351,11 @@ class Cortex::Origins {
     if (!change_.remeshed.empty() && before_.rule_.side != CellSide::lateral)
       return change_.is_remeshed(face.cell) ? found->second : std::vector{found->second[ordinal]};
     // Hanging nodes are numbered again when cells change; a wall that turns keeps its nodes.
-    const std::array<NodeId, 4> nodes = sorted(face.nodes);
+    std::array<NodeId, 4> nodes = sorted(face.nodes);
     const bool are_known =
         (change_.daughters.empty() && change_.remeshed.empty()) || nodes.back().index() < change_.kept_nodes();
+    for (NodeId& node : nodes)
+      if (node.index() < change_.kept_nodes()) node = change_.node_origin[node.index()];
     const auto is_between = [&](const Face& other) { return cells_of(other.cell, other.beyond) == cells; };
     if (const auto same = by_nodes_.find(nodes); are_known && same != by_nodes_.end())
       if (change_.remeshed.empty() || is_between(before_.faces_[same->second])) return {same->second};

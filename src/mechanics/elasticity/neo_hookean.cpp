@@ -197,6 +197,22 @@ std::vector<double> NeoHookean::internal_after_division(std::span<const double> 
     for (int i = 0; i < 8; ++i) x += shape[i] * rest[i];
     return x;
   };
+  // Gauss point of the cell before that is nearest in the reference state. Exchanges leave the elements of other cells.
+  const auto origin_of = [&](std::size_t e, int g) {
+    const CellId cell = tissue.element_cell[e];
+    const std::vector<std::size_t>& before = of_cell[change.origin[cell.index()].index()];
+    if (!change.remeshed.empty()) return std::pair(before[e - tissue.cells[cell.index()].first_element.index()], g);
+    const Vec3 x = where(tissue.element_rest_shape[e], g);
+    double least = std::numeric_limits<double>::infinity();
+    std::pair<std::size_t, int> nearest;
+    for (const std::size_t old : before)
+      for (int h = 0; h < 8; ++h)
+        if (const double distance = (where(rest_[old], h) - x).squaredNorm(); distance < least) {
+          least = distance;
+          nearest = {old, h};
+        }
+    return nearest;
+  };
   const std::size_t count = tissue.elements.size(), batches = (count + batch_size - 1) / batch_size;
   std::vector<double> after(2 * batches * numbers_a_batch);
   const auto [now, earlier] = memory(internal);
@@ -204,22 +220,12 @@ std::vector<double> NeoHookean::internal_after_division(std::span<const double> 
   for (std::size_t place = 0; place < batches * batch_size; ++place)
     for (int g = 0; g < 8; ++g) {
       const std::size_t e = std::min(place, count - 1);
-      const CellId cell = tissue.element_cell[e];
-      if (change.is_remeshed(cell)) {
+      if (change.is_remeshed(tissue.element_cell[e])) {
         for (const std::span<FlowedBatch> batch : {now_after, earlier_after})
           put(Mat3::Identity(), first_of(batch, place, g));
         continue;
       }
-      const Vec3 x = where(tissue.element_rest_shape[e], g);
-      double least = std::numeric_limits<double>::infinity();
-      std::pair<std::size_t, int> nearest;
-      for (const std::size_t old : of_cell[change.origin[cell.index()].index()])
-        for (int h = 0; h < 8; ++h)
-          if (const double distance = (where(rest_[old], h) - x).squaredNorm(); distance < least) {
-            least = distance;
-            nearest = {old, h};
-          }
-      const auto [from, h] = nearest;
+      const auto [from, h] = origin_of(e, g);
       put(symmetric_at(first_of(now, from, h)), first_of(now_after, place, g));
       put(symmetric_at(first_of(earlier, from, h)), first_of(earlier_after, place, g));
     }

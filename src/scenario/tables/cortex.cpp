@@ -117,7 +117,7 @@ void check_cortex(const std::string& table, CortexInput& cortex, const Scenario&
 WallFactorRule make_wall_factors(const CortexInput& input) {
   WallFactorRule rule;
   if (const auto& [axis, strongest, weakest] = input.direction; !axis.empty())
-    rule.direction = WallDirection{axis == "across", strongest, weakest};
+    rule.direction = WallDirection{meaning_of(words::delay_axes, axis) == PatternAxis::across, strongest, weakest};
   rule.noise = {input.noise.spread, input.noise.correlation_s.value_or(0),
                 static_cast<std::uint64_t>(input.noise.seed)};
   return rule;
@@ -222,7 +222,7 @@ ScenarioTable cortex_table() {
                            "Value at which, and before which, the factor is 0."),
                        row("follow.to", &X::follow, &FollowInput::to, not_negative,
                            "Value at which, and beyond which, the factor is 1."),
-                       row("direction.axis", &X::direction, &WallDirectionInput::axis, one_of({"along", "across"}),
+                       row("direction.axis", &X::direction, &WallDirectionInput::axis, one_of(words::delay_axes),
                            "Planar polarity of lateral faces: axis of the angle a between it and a face's normal."),
                        row("direction.strongest", &X::direction, &WallDirectionInput::strongest, not_negative,
                            "Factor on the tension at a = 0: faces across the axis."),
