@@ -166,7 +166,7 @@ double shear_between(const Tissue& tissue, std::span<const Vec3> before, std::sp
 }
 
 double shape_shear(const Tissue& tissue, std::span<const Vec3> positions) {
-  // The equilateral triangle becomes one of these by the matrix S, which has S S^T as second moments, but for a factor.
+  // The equilateral triangle becomes one of these by the matrix S, which has S S^T as second moments, up to a factor.
   const Mat2 equilateral = (Mat2() << 1, 0.5, 0, std::sqrt(0.75)).finished();
   Mat2 sum = Mat2::Zero();
   for (const Triangle& triangle : triangles_of(tissue, threes_of(tissue.sheet), positions)) {
