@@ -271,6 +271,7 @@ struct DivisionInput {
   std::optional<double> at_s;  // TOML: at_s or at_min
   std::string when;            // area_above_um2 | volume_above_um3 | elongation_above, with a threshold
   std::optional<double> threshold;
+  double every_s = 0;                // with `when`: between checks; TOML: every_s or every_min
   std::string plane = "transverse";  // transverse | sagittal | longest-axis
   double growth_s = 300;             // TOML: growth_s or growth_min
   double daughter_volume_ratio = 1;

@@ -26,6 +26,7 @@ DivisionRule make_division_rule(const DivisionInput& input) {
   }
   rule.plane = meaning_of(words::division_planes, input.plane);
   rule.growth_s = input.growth_s;
+  rule.every_s = input.every_s;
   rule.volume_ratio = input.daughter_volume_ratio;
   rule.max_generation = input.max_generation.value_or(input.at_s ? std::numeric_limits<int>::max() : 1);
   return rule;

@@ -171,6 +171,9 @@ std::vector<PlannedDivision> due_divisions(const Model& model, const State& stat
     const bool at_a_time = rule.trigger == DivisionTrigger::time;
     if (at_a_time && (has_come(rule.threshold, state.divided_until_s) || !has_come(rule.threshold, state.time_s)))
       continue;
+    if (!at_a_time && rule.every_s > 0 &&
+        !has_come((std::floor((state.divided_until_s + instant_s) / rule.every_s) + 1) * rule.every_s, state.time_s))
+      continue;
     const std::vector<double> values = measured(rule.trigger, model, state);
     const CellSet& region = model.tissue.regions.at(rule.region);
     for (std::size_t c = 0; c < region.size(); ++c) {

@@ -17,6 +17,7 @@ struct DivisionRule {
   DivisionPlane plane = DivisionPlane::transverse;
   double growth_s = 0;
   double volume_ratio = 1;
+  double every_s = 0;      // thresholds: interval between checks; 0: after every step
   int max_generation = 1;  // no division whose daughters would be of a later generation
 };
 

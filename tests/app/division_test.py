@@ -68,6 +68,7 @@ growth_s = 10
             "at and when": CUT + 'when = "area_above_um2"\nthreshold = 3\n',
             "when without threshold": CUT.replace("at_s = 15", 'when = "area_above_um2"'),
             "threshold without when": CUT + "threshold = 3\n",
+            "every_s without when": CUT + "every_s = 3\n",
             "no time": CUT.replace("at_s = 15\n", ""),
             "at the start": CUT.replace("at_s = 15", "at_s = 0"),
             "plane": CUT.replace("transverse", "vertical"),

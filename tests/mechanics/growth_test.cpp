@@ -71,6 +71,27 @@ TEST(CellGrowth, TurnsWithTheCellsOfARoundTissue) {
   }
 }
 
+// Faces normal to x, y and z of a cell that grows beside one that does not.
+TEST(CellGrowth, RestAreasOfCorticesGrowBySideAndNeighbour) {
+  const Tissue tissue = build_block(two_cells);
+  std::vector<GrowthTensor> tensors(2);
+  tensors[0] = {Vec3(1.5, 1.2, 1.1).asDiagonal(), 1.5 * 1.2 * 1.1};
+  for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
+    const Cortex before(tissue, CellSet{true, true}, {.side = side, .stiffness = 1});
+    const std::unique_ptr<Law> law = before.grown(tissue, {}, tensors);
+    const Motion rest = at_rest(tissue);
+    const std::vector<double> tensions = dynamic_cast<const Cortex&>(*law).tensions(rest.step());
+    ASSERT_EQ(tensions.size(), before.faces().size());
+    for (std::size_t f = 0; f < tensions.size(); ++f) {
+      const Face& face = before.faces()[f];
+      const Vec3 normal = facet_area_vector(gather(tissue.rest_positions, face.nodes)).normalized().cwiseAbs();
+      const double grown = normal.dot(Vec3(1.2 * 1.1, 1.5 * 1.1, 1.5 * 1.2));
+      const double ratio = face.beyond ? 0.5 * (grown + 1) : face.cell == CellId(0) ? grown : 1;
+      EXPECT_NEAR(tensions[f], 1 / ratio - 1, 1e-12) << f;
+    }
+  }
+}
+
 // Laws of a grown model are those of the shapes at that time, however many models lie between.
 TEST(Grown, DependsOnTheTimeAlone) {
   const Scenario scenario = scenario_of(sheet_table(60, 50, 15, 25) + R"([elasticity]
@@ -285,6 +306,23 @@ TEST(Growth, WithDivisionKeepsVolumesAndResumesBitwiseOnAnyNumberOfThreads) {
     ASSERT_FALSE(testing::Test::HasFailure()) << "from step " << k + 1;
   }
   EXPECT_GE(resumed, 4);
+}
+
+TEST(Growth, CellsDivideInBatchesIfThresholdsAreCheckedSeldom) {
+  Simulation simulation(scenario_of(proliferating, {"division.d.every_min=2"}));
+  std::size_t cells = simulation.model().tissue.cells.size();
+  int batches = 0;
+  for (double before_s = 0; simulation.step(); before_s = simulation.time_s()) {
+    const std::size_t now = simulation.model().tissue.cells.size();
+    if (now == cells) continue;
+    EXPECT_GT(std::floor((simulation.time_s() + 1e-6) / 120), std::floor((before_s + 1e-6) / 120));
+    EXPECT_GT(now, cells);
+    cells = now, ++batches;
+  }
+  ASSERT_EQ(simulation.status(), RunStatus::end_time) << simulation.failure();
+  std::printf("%zu cells after %d batches, in %d steps\n", cells, batches, simulation.steps());
+  EXPECT_GE(batches, 3);
+  EXPECT_GT(cells, 30U);
 }
 
 // What cells have after a cut is what their mother had: volumes, targets, and rest areas of faces that stay.

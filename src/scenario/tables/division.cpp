@@ -18,6 +18,8 @@ void check_division(const std::string& table, const DivisionInput& division, Inp
     input.report(table + ".threshold", "is missing", "set threshold to the value at which cells divide");
   if (division.when.empty() && division.threshold)
     input.report(table + ".threshold", "is not used without `when`", "remove threshold, or set when");
+  if (division.when.empty() && division.every_s > 0 && input.sound(table + ".every_s"))
+    input.report(table + ".every_s", "is not used without `when`", "remove every_s, or set when");
 }
 
 void check_divisions(Scenario& scenario, Input& input) {
@@ -58,6 +60,10 @@ ScenarioTable division_table() {
           "Instead of a time: a cell divides when its apical area, volume or elongation (longer / shorter side) "
           "exceeds `threshold`, unless it is still growing."),
       row("threshold", &V::threshold, positive, "Threshold of `when`."),
+      row("every_s", &V::every_s, not_negative,
+          "Interval between checks of `threshold` (s); 0: after every step. Steps restart at a division, so a tissue "
+          "that proliferates runs faster if many cells divide at once."),
+      row("every_min", &V::every_s, not_negative, "`every_s` in minutes.", {.instead_of = "every_s", .scale = 60}),
       row("plane", &V::plane, one_of(words::division_planes),
           "Apico-basal division plane through midpoints of opposite cell sides: across the axis, along the midline, or "
           "across the longer side."),
