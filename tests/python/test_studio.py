@@ -76,6 +76,13 @@ def test_a_draft_is_written_as_differences_and_reads_back():
     assert draft.table["cortex"]["apical"]["tension_mN_per_m"] == 1.5
 
 
+def test_a_draft_without_a_base_is_written_without_defaults():
+    draft = Draft.of("sheet")
+    draft.set({"region.stripe": {"ids": [3, 4]}, "cortex.apical": {"region": "stripe", "tension_mN_per_m": 3}})
+    assert "tension_mN_per_m = 3" in draft.text() and "cg_tolerance" not in draft.text()
+    assert plica.Scenario(draft.text()).to_dict() == draft.table
+
+
 def test_all_of_a_drag_of_a_slider_is_one_step_of_undo():
     draft = Draft.of("drosophila-deep")
     before = draft.table

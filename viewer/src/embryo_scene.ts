@@ -144,7 +144,7 @@ export class EmbryoScene {
     this.shellSize = size;
     this.shell.geometry.dispose();
     this.shell.geometry = size
-      ? new three.CapsuleGeometry(size.radius_um, 2 * size.half_axis_um, 48, 128, 1).rotateZ(Math.PI / 2)
+      ? new three.CapsuleGeometry(size.radius_um, 2 * size.half_axis_um, 24, 64, 1).rotateZ(Math.PI / 2)
       : new three.BufferGeometry();
   }
 

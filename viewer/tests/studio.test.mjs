@@ -176,6 +176,20 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.waitForFunction(() => /^[1-9]/.test(document.querySelector("#time-text").textContent) &&
     document.querySelector("#plots canvas"));
 
+  // The movie's last picture is that of the page.
+  for (const kind of ["picture", "movie"]) {
+    const { name, bytes } = await saved(page, `#save-${kind}`);
+    writeFileSync(join(folder, name), bytes);
+  }
+  const [frames, apart] = JSON.parse(execFileSync(python, ["-c", `if True:
+    import json
+    from PIL import Image, ImageChops, ImageStat
+    movie, page = Image.open("plica.gif"), Image.open("plica.png").convert("RGB")
+    movie.seek(movie.n_frames - 1)
+    apart = ImageChops.difference(movie.convert("RGB"), page.resize(movie.size, Image.Resampling.BOX))
+    print(json.dumps([movie.n_frames, max(ImageStat.Stat(apart).mean)]))`], { cwd: folder }));
+  assert.ok(frames > 5 && apart < 6, `${frames} pictures, ${apart} of 255 apart`);
+
   await page.click("#clear-selection");
   await paintBelow(page);
   await page.click("#act-cut");
@@ -200,20 +214,6 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.waitForFunction(() => document.querySelector('li[data-run="3"]').dataset.status === "paused");
   await page.click("#go");
   await ended(page, 3);
-
-  // The movie's last picture is that of the page.
-  for (const kind of ["picture", "movie"]) {
-    const { name, bytes } = await saved(page, `#save-${kind}`);
-    writeFileSync(join(folder, name), bytes);
-  }
-  const [frames, apart] = JSON.parse(execFileSync(python, ["-c", `if True:
-    import json
-    from PIL import Image, ImageChops, ImageStat
-    movie, page = Image.open("plica.gif"), Image.open("plica.png").convert("RGB")
-    movie.seek(movie.n_frames - 1)
-    apart = ImageChops.difference(movie.convert("RGB"), page.resize(movie.size, Image.Resampling.BOX))
-    print(json.dumps([movie.n_frames, max(ImageStat.Stat(apart).mean)]))`], { cwd: folder }));
-  assert.ok(frames > 5 && apart < 6, `${frames} pictures, ${apart} of 255 apart`);
 
   // What is taken away repeats the run, digit by digit.
   const text = await page.evaluate(async () =>

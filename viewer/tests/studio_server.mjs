@@ -21,5 +21,5 @@ export async function serve(folder, scenario = ".") {
     server.kill(signal);
     return ended;
   };
-  return { url, stop };
+  return { url, stop, pid: server.pid };
 }

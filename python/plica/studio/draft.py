@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any, Optional
 
 from .. import _core
+from ..errors import ScenarioError
 from ..scenario import Scenario, _items, _toml_key, _toml_value
 
 MOST_UNDO, MOST_SAVED = 200, 20
@@ -171,10 +172,13 @@ class Draft:
 
 
 def text_of(table: Table, base: str) -> str:
-    """Write a complete scenario as its differences from a built-in one, or whole where these cannot express it."""
-    if base:
-        short: Table = changed({"format": 1, "base": base}, differences(table, Scenario(base).to_dict()))
-        read = Scenario(short).to_dict()
+    """Write a complete scenario as its differences from a built-in one or from defaults, or whole where these fail."""
+    for start in [{"format": 1, "base": base}] * bool(base) + [{"format": 1, "embryo": table["embryo"]}]:
+        try:
+            short = changed(start, differences(table, Scenario(start).to_dict()))
+            read = Scenario(short).to_dict()
+        except ScenarioError:  # a file of cells that is gone, say
+            continue
         read.pop("expect", None)
         if read == table:
             return toml(short)

@@ -231,11 +231,12 @@ class Server:
 
 
 def _bound(port: int) -> socket.socket:
-    """Return a socket on this port, or on a free one if it is taken."""
+    """Return a socket on this port, or on a free one if it is taken. A browser that is faster than the server waits."""
     made = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         made.bind((HOST, port))
     except OSError:
         made.bind((HOST, 0))
+    made.listen()
     return made

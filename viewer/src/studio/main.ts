@@ -24,7 +24,7 @@ import { ToolsBar } from "./tools_bar";
 const chartsApart = 700; // ms
 const mostCellsWithEdges = 5000;
 const movieLength = 8000; // ms
-const mostPictures = 120; // of a movie
+const mostPictures = 80; // of a movie
 const difference: Field = {
   name: "difference", label: "distance from the run beside, µm", unit: "", on_nodes: true, scale: "from-zero",
   map: "from_zero", low: 0, high: 1,
@@ -41,6 +41,7 @@ class Studio {
   private readonly shapes = new Map<string, LiveTopology>();
   private readonly wants = [false, false]; // slots to be asked for at the next refresh
   private readonly frameShown = [-1, -1]; // index of the frame shown in each slot
+  private isRecording = false; // a movie, whose pictures are not drawn on the page, too
   private frameCount = 0; // of the run in the first slot
   private isShown: (() => void) | null = null; // called when every slot shows the frame it waits for
   private at: number | null = null;
@@ -111,7 +112,7 @@ class Studio {
     const tick = (now: number) => {
       this.time.tick(now);
       this.askNow();
-      this.views?.draw();
+      if (!this.isRecording) this.views?.draw();
       if (now - this.chartsAt > chartsApart) this.updateCharts(now);
       requestAnimationFrame(tick);
     };
@@ -461,7 +462,7 @@ class Studio {
     const run = this.panel.run(this.chosen.run);
     if (!run || !this.views) return this.tell("A movie shows a run; choose one under Runs.");
     const button = byId("save-movie") as HTMLButtonElement;
-    button.disabled = true;
+    button.disabled = this.isRecording = true;
     const pictureAt = async (part: number) => {
       await this.shownAt(part * run.time_s);
       const canvas = await this.views!.drawing(1);
@@ -479,7 +480,7 @@ class Studio {
     this.at = null;
     this.ask();
     button.textContent = "Movie";
-    button.disabled = false;
+    button.disabled = this.isRecording = false;
   }
 
   /** Look at a time, null: the newest frame, and wait until it is shown in every slot. */
