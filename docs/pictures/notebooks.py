@@ -50,9 +50,11 @@ def run(notebook):
         plt.rcdefaults()
         plt.rcParams["font.size"] = 14  # readable where a picture is shrunk
         for cell in CELL.finditer(text):
+            before = names.get("figure")
             exec(compile(cell["code"], str(notebook), "exec"), names)
             if cell["picture"]:
-                write(plt.gcf(), (notebook.parent / cell["picture"]).resolve())
+                own = names.get("figure")  # one that pyplot may not know
+                write(plt.gcf() if own is before else own, (notebook.parent / cell["picture"]).resolve())
         plt.close("all")
         os.chdir(NOTEBOOKS)
     print(f"{notebook.name}: {time.monotonic() - begin:.0f} s", flush=True)

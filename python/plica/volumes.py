@@ -241,7 +241,8 @@ def _pieces(layer: Layer, kept: list[int]) -> list[list[int]]:
 def _joined(things: Iterable[int], pairs: list[tuple[int, int]]) -> list[list[int]]:
     """Return the groups of things that pairs connect, each in order."""
     names, rows = np.array(sorted(things), dtype=np.int64), np.array(pairs, dtype=np.int64).reshape(-1, 2)
-    group = components(*np.searchsorted(names, rows).T, len(names)) if len(names) else names
+    one, other = np.searchsorted(names, rows).T
+    group = components(one, other, len(names)) if len(names) else names
     return [names[group == number].tolist() for number in range(int(group.max(initial=-1)) + 1)]
 
 
