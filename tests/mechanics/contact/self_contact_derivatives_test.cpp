@@ -27,7 +27,7 @@ void expect_derivatives_by_pairs(const Tissue& tissue, const SelfContact& law, c
     motion.previous_positions = finding.positions;
     return flat(adjoint).dot(flat(forces_of(law, motion.step())));
   };
-  const double d = 1e-5, difference = (along_adjoint(d) - along_adjoint(-d)) / (2 * d);
+  const double d = 2e-6, difference = (along_adjoint(d) - along_adjoint(-d)) / (2 * d);
 
   motion.internal = pairs_at(0);
   motion.previous_positions = finding.positions;
