@@ -32,11 +32,11 @@ std::map<std::size_t, std::shared_ptr<const Law>> scale_strengths(Simulation::Pa
   return unscaled;
 }
 
-void require_constant_model(const Simulation& simulation, const Model* first) {
-  if (simulation.divisions() > 0 || &simulation.solved_model() != first)
+void require_same_model(const Simulation& simulation, std::uint64_t revision) {
+  if (simulation.solved_model().revision != revision)
     throw NoGradient(
-        fmt::format("at t = {:g} s cells divide or grow, through which there are no gradients yet; end "
-                    "the run before, or remove it from the scenario",
+        fmt::format("at t = {:g} s cells divide, grow or exchange neighbours, through which there are no "
+                    "gradients yet; end the run before, or remove this from the scenario",
                     simulation.time_s()));
 }
 
@@ -60,15 +60,15 @@ Tape::Tape(const Scenario& scenario, const RecordingInput& input)
   measure_plan_ = std::make_shared<const MeasurePlan>(parts.measure_plan);
   Simulation simulation(std::move(parts));
   simulation.stop_when(input.stop_requested);
-  const Model* model = &simulation.solved_model();
+  const std::uint64_t revision = simulation.solved_model().revision;
   whole_ = std::make_shared<const Model>(simulation.model());
-  solved_ = mirror_.is_used() ? std::make_shared<const Model>(*model) : whole_;
+  solved_ = mirror_.is_used() ? std::make_shared<const Model>(simulation.solved_model()) : whole_;
 
   run_.states.push_back(TapedState::of(simulation.solved_state()));
   const auto run_to = [&](double time_s) {
     State before = simulation.solved_state();
     while (simulation.step(time_s)) {
-      require_constant_model(simulation, model);
+      require_same_model(simulation, revision);
       run_.rates.push_back(rates_of(before, simulation.solved_state()));
       run_.states.push_back(TapedState::of(simulation.solved_state()));
       before = simulation.solved_state();

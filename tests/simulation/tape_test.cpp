@@ -225,7 +225,7 @@ TEST(Tape, RefusesWhatHasNoDerivativesByName) {
             "elasticity: viscosity has no derivatives yet; set dynamics.shear_viscosity_Pa_s = 0");
   EXPECT_EQ(refused({"dynamics.density_kg_per_m3=1000", "time.integrator=\"backward-euler\""}),
             "inertia: this law has no derivatives yet; remove it from the scenario");
-  EXPECT_NE(refused({"division.one.region=\"all\"", "division.one.at_s=1"}).find("cells divide or grow"),
+  EXPECT_NE(refused({"division.one.region=\"all\"", "division.one.at_s=1"}).find("cells divide, grow"),
             std::string::npos);
   const Scenario scenario = load_scenario(pulled_block());
   const Tape tape(scenario, {.until_s = 1});

@@ -8,7 +8,6 @@
 #include <set>
 
 #include "mechanics/contact/nonconforming_edges.hpp"
-#include "mechanics/coulomb.hpp"
 
 namespace plica {
 namespace {
@@ -264,28 +263,6 @@ std::vector<double> SelfContact::packed(const std::vector<Pair>& pairs, std::spa
   add_touching(before, joined_before);
   if (joined != joined_before) ++numbers.front();
   return numbers;
-}
-
-// Call take(pair, penetration of its contact distance) for every pair under pressure.
-template <class Take>
-void SelfContact::for_pressed(const Step& step, const Take& take) const {
-  for (const Pair& pair : pairs_of(step.internal)) {
-    const double inside = pair.distance - pair.gap(MirroredVectors{mirror_, step.positions});
-    if (inside > 0) take(pair, inside);
-  }
-}
-
-// Call take(pair, friction, velocity of p along q) for every pair under pressure at the beginning of the step.
-template <class Take>
-void SelfContact::for_rubbing(const Step& step, const Take& take) const {
-  if (rule_.friction == 0) return;
-  for (const Pair& pair : pairs_of(step.internal)) {
-    const double inside = pair.distance - pair.first_gap;
-    if (inside <= 0) continue;
-    const auto apart = [&](std::span<const Vec3> x) { return pair.apart(MirroredVectors{mirror_, x}); };
-    take(pair, Coulomb{rule_.friction * rule_.stiffness * pair.area * inside},
-         pair.along(apart(step.positions) - step.before(apart)) / step.rate_s);
-  }
 }
 
 double SelfContact::energy(const Step& step) const {

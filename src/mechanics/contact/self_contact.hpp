@@ -21,6 +21,7 @@
 #include "core/box_grid.hpp"
 #include "mechanics/contact/contact_pair.hpp"
 #include "mechanics/contact/edge_pairs.hpp"
+#include "mechanics/coulomb.hpp"
 #include "mechanics/derivatives.hpp"
 #include "mechanics/law.hpp"
 #include "tissue/mirror.hpp"
@@ -74,8 +75,8 @@ class SelfContact final : public Law, public LawDerivatives {
                                                             const TissueChange& change,
                                                             const ChangePositions& positions) const override;
 
-  /// Pairs keep their features. NoGradient with friction.
-  [[nodiscard]] const LawDerivatives& derivatives() const override;
+  /// Pairs keep their features.
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
   void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
                           const BeginningGradient& gradient) const override;
   void add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
@@ -129,10 +130,26 @@ class SelfContact final : public Law, public LawDerivatives {
   /// Add a push to the nodes of p, and its opposite to those of q.
   void add_push(const Pair& pair, const Vec3& push, std::span<Vec3> forces) const;
   [[nodiscard]] std::vector<double> packed(const std::vector<Pair>& pairs, std::span<const double> before) const;
+  /// Call take(pair, penetration of its contact distance) for every pair under pressure.
   template <class Take>
-  void for_pressed(const Step& step, const Take& take) const;
+  void for_pressed(const Step& step, const Take& take) const {
+    for (const Pair& pair : pairs_of(step.internal)) {
+      const double inside = pair.distance - pair.gap(MirroredVectors{mirror_, step.positions});
+      if (inside > 0) take(pair, inside);
+    }
+  }
+  /// Call take(pair, friction, velocity of p along q) for every pair under pressure at the beginning of the step.
   template <class Take>
-  void for_rubbing(const Step& step, const Take& take) const;
+  void for_rubbing(const Step& step, const Take& take) const {
+    if (rule_.friction == 0) return;
+    for (const Pair& pair : pairs_of(step.internal)) {
+      const double inside = pair.distance - pair.first_gap;
+      if (inside <= 0) continue;
+      const auto apart = [&](std::span<const Vec3> x) { return pair.apart(MirroredVectors{mirror_, x}); };
+      take(pair, Coulomb{rule_.friction * rule_.stiffness * pair.area * inside},
+           pair.along(apart(step.positions) - step.before(apart)) / step.rate_s);
+    }
+  }
 
   SelfContactRule rule_;
   Mirror mirror_;

@@ -122,35 +122,49 @@ std::span<ContactPair> pairs_in(std::span<double> internal) {
 
 }  // namespace
 
-const LawDerivatives& SelfContact::derivatives() const {
-  if (rule_.friction != 0) refuse_gradient("friction has no derivatives yet; set self_contact.friction = 0");
-  return *this;
-}
-
-// With m the distance of the adjoint's p and q, adjoint . forces of a pair is k w (D - N.(p - q)) N.m.
 void SelfContact::add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
                                      const BeginningGradient& gradient) const {
   const std::span<const Pair> pairs = pairs_of(step.internal);
   if (pairs.empty()) return;
   const std::span<Pair> of_pairs = pairs_in(gradient.internal);
+  const auto of_pair = [&](const Pair& pair) -> Pair& {
+    return of_pairs[static_cast<std::size_t>(&pair - pairs.data())];
+  };
   const MirroredVectors x{mirror_, step.positions}, of_adjoint{mirror_, adjoint};
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const Pair& pair = pairs[k];
-    const double inside = pair.distance - pair.gap(x);
-    if (inside <= 0) continue;
+  // Add the gradient by weights of p and q, given that by the weight of a node of p.
+  const auto add_by_weights = [&](const Pair& pair, const auto& by_weight) {
+    for (int i = 0; i < pair.p.count(); ++i) of_pair(pair).p.weights[i] += by_weight(pair.p.nodes[i].index());
+    for (int i = 0; i < pair.q.count(); ++i) of_pair(pair).q.weights[i] -= by_weight(pair.q.nodes[i].index());
+  };
+
+  // With m the distance of the adjoint's p and q, adjoint . forces of a pair is k w (D - N.(p - q)) N.m.
+  for_pressed(step, [&](const Pair& pair, double inside) {
     const Vec3 m = pair.apart(of_adjoint), &N = pair.normal;
     const double stiffness = rule_.stiffness * pair.area, closer = N.dot(m);
-    of_pairs[k].distance += stiffness * closer;
-    of_pairs[k].normal += stiffness * (inside * m - closer * pair.apart(x));
-    const auto add = [&](const SurfacePlace& place, double sign, SurfacePlace& of_place) {
-      for (int i = 0; i < place.count(); ++i) {
-        const std::size_t n = place.nodes[i].index();
-        of_place.weights[i] += sign * stiffness * (inside * N.dot(of_adjoint[n]) - closer * N.dot(x[n]));
-      }
+    of_pair(pair).distance += stiffness * closer;
+    of_pair(pair).normal += stiffness * (inside * m - closer * pair.apart(x));
+    add_by_weights(pair,
+                   [&](std::size_t n) { return stiffness * (inside * N.dot(of_adjoint[n]) - closer * N.dot(x[n])); });
+  });
+
+  // That of friction is m.f(v), f being proportional to D - first gap, and v = (I - N N^T) u / rate, with u the
+  // movement of p - q since the beginning.
+  for_rubbing(step, [&](const Pair& pair, const Coulomb& friction, const Vec3& velocity) {
+    const auto moved = [&](auto of) { return Vec3(of(step.positions) - step.before(of)); };
+    const auto node_moved = [&](std::size_t n) {
+      return moved([&](std::span<const Vec3> at) { return MirroredVectors{mirror_, at}[n]; });
     };
-    add(pair.p, 1, of_pairs[k].p);
-    add(pair.q, -1, of_pairs[k].q);
-  }
+    const Vec3 u = moved([&](std::span<const Vec3> at) { return pair.apart(MirroredVectors{mirror_, at}); });
+    const Vec3 m = pair.apart(of_adjoint), &N = pair.normal, force = friction.force(velocity);
+    const Vec3 by_v = -(friction.resistance(velocity) * m) / step.rate_s, by_u = pair.along(by_v);
+    const double by_inside = m.dot(force) / (pair.distance - pair.first_gap);
+    of_pair(pair).distance += by_inside;
+    of_pair(pair).first_gap -= by_inside;
+    of_pair(pair).normal -= N.dot(u) * by_v + by_v.dot(N) * u;
+    add_by_weights(pair, [&](std::size_t n) { return force.dot(of_adjoint[n]) + by_u.dot(node_moved(n)); });
+    add_push(pair, -(1 + step.ahead) * by_u, gradient.previous);
+    if (step.ahead > 0) add_push(pair, step.ahead * by_u, gradient.earlier);
+  });
 }
 
 void SelfContact::add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
