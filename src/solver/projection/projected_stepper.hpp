@@ -1,4 +1,4 @@
-// Time stepping of the paper (2.5, 2.7). Theory: docs/theory/paper_algorithm.md.
+// Time stepping of the paper (2.5, 2.7). Theory: docs/developers/paper-algorithm.md.
 #pragma once
 
 #include "solver/algebra/krylov.hpp"

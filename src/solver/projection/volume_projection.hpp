@@ -1,6 +1,6 @@
 // Incompressibility of the paper (2.5): after the force step, X <- X + l W dV/dX with the real root l nearest zero of
 // the cubic V(X + l W dV/dX) = V0, one closed surface after another, alternating obstacles and volumes, until all hold.
-// Theory: docs/theory/paper_algorithm.md.
+// Theory: docs/developers/paper-algorithm.md.
 #pragma once
 
 #include <functional>

@@ -62,7 +62,7 @@ Vectors drags(const Model& model) {
 }
 
 // Where a splitting rests: f(x) + (D + h K) W J^T p = 0 to first order in h, W the projection's weights; and not where
-// forces balance, f(x) + J^T p = 0 (docs/theory/paper_algorithm.md).
+// forces balance, f(x) + J^T p = 0 (docs/developers/paper-algorithm.md).
 TEST(ProjectedStepper, RestsWhereTheoryHasIt) {
   const Model model = sheet(false);
   const Vectors drag = drags(model);
