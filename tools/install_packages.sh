@@ -1,7 +1,7 @@
 #!/bin/bash
 # Installs missing packages of Debian (12 or 13) that plica requires, with root or sudo.
 # Usage: tools/install_packages.sh [GROUP...], of: build libraries viewer browser firefox python tests checks tidy
-# pictures site fuzz slurm. Without a group: all except slurm.
+# pictures site napari fuzz slurm. Without a group: all except slurm.
 set -euo pipefail
 
 # The one list of packages. docs/developers/dependencies.md explains each library.
@@ -27,6 +27,8 @@ declare -A packages=(
   [pictures]="xvfb xauth libgl1-mesa-dri"
   # To make the site of the documentation (docs/build), whose notebooks draw with PyVista.
   [site]="python3-venv nodejs npm libgl1 libegl1 libgl1-mesa-dri"
+  # What the windows of napari need (tests/napari).
+  [napari]="libgl1 libegl1 libxkbcommon0"
   # To fuzz the readers, fuzz/run, and for the preset tsan. (Clang with libFuzzer and the sanitizers; its OpenMP with
   # Archer.)
   [fuzz]="clang libclang-rt-dev libomp-dev"
@@ -35,7 +37,7 @@ declare -A packages=(
 )
 
 groups=("$@")
-[ ${#groups[@]} -gt 0 ] || groups=(build libraries viewer browser firefox python tests checks tidy pictures site fuzz)
+[ ${#groups[@]} -gt 0 ] || groups=(build libraries viewer browser firefox python tests checks tidy pictures site napari fuzz)
 
 wanted=()
 for group in "${groups[@]}"; do
