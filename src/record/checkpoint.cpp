@@ -72,8 +72,8 @@ void pass(AnyCheckpoint& checkpoint, Archive& archive) {
   auto& state = run.state;
   auto& trend = state.trend;
   numbers("state", state.time_s, state.positions, state.velocities, state.multipliers, state.obstacle_forces,
-          state.on_obstacle, state.internals, state.signals, state.divided_until_s, state.exchanges, trend.step_s, trend.earlier_s,
-          trend.mean_velocities, trend.accelerations, trend.multiplier_rates);
+          state.on_obstacle, state.internals, state.signals, state.divided_until_s, state.exchanges, trend.step_s,
+          trend.earlier_s, trend.mean_velocities, trend.accelerations, trend.multiplier_rates);
   auto& measures = run.measures;
   numbers("measures", measures.values, measures.monitors, measures.criteria_met, measures.is_over);
   numbers("run", run.steps, run.divisions, run.equilibrium_time_s, run.at_equilibrium, run.wanted_step_s,
