@@ -10,7 +10,6 @@ SIZE = (440, 220)  # twice that on the page
 LAST = [(690, 50, 1000, 262), (690, 262, 1000, 520)]  # last time, from outside and in cross-section
 TIMES = [(406, 46, 594, 234), (798, 46, 986, 234)]     # third and last of five cross-sections
 PARTS = {
-    "sheet": [(680, 140, 1190, 890), (60, 120, 545, 900)],
     "division-demo": [(375, 50, 640, 280), (670, 50, 1000, 255)],
     "drosophila": LAST,
     "drosophila-atlas": [(300, 70, 560, 185), (370, 214, 500, 338)],
@@ -23,6 +22,7 @@ PARTS = {
     "drosophila-paper": [(665, 42, 1000, 384)],
     "drosophila-shape-memory": [(335, 42, 660, 384)],
     "furrow-slice": TIMES,
+    "sheet": [(680, 140, 1190, 890), (60, 120, 545, 900)],
     "wing-disc": [(590, 45, 900, 520), (505, 540, 985, 655)],
     "xenopus": LAST,
 }
