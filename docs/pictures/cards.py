@@ -29,7 +29,7 @@ PARTS = {
     "wing-disc": [(590, 45, 900, 520), (505, 540, 985, 655)],
     "xenopus": LAST,
 }
-FROM = {"sheet": "../studio/tissue", "drosophila-paper": "drosophila-variants", "drosophila-shape-memory": "drosophila-variants"}
+FROM = {"drosophila-paper": "drosophila-variants", "drosophila-shape-memory": "drosophila-variants"}
 
 
 def trimmed(image):

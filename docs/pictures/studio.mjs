@@ -132,7 +132,7 @@ await replayed(1200, 10);
 await filmed(2500);
 await shot("cut");
 const { bytes } = await saved(page, "#save-picture");
-writeFileSync(join(out, "tissue.png"), bytes);
+writeFileSync(join(out, "sheet.png"), bytes);
 
 // What is taken away.
 const text = await page.evaluate(async () => (await fetch(document.querySelector('li[data-run="2"] a').href)).text());

@@ -1,4 +1,4 @@
-"""Draws docs/images/studio/ and docs/images/studio.gif: plica studio, driven in a browser by studio.mjs.
+"""Draws docs/images/studio/, studio.gif and, for cards.py, scenarios/sheet.png: plica studio, driven in a browser by studio.mjs.
 
 Usage: studio.py. Needs Chromium, node with viewer/node_modules, Pillow, and in STUDIO_PYTHON the Python that has plica[studio]:
 STUDIO_PYTHON=build/venv/bin/python PYTHONPATH=build/release/python build/venv/bin/python docs/pictures/studio.py"""
@@ -33,8 +33,8 @@ if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as name:
         subprocess.run(["node", HERE / "studio.mjs", name], check=True)
         film(Path(name))
-        for one in ("paint", "fold", "cut", "tissue"):
-            made.append(IMAGES / f"studio/{one}.png")
+        for one, place in [("paint", "studio"), ("fold", "studio"), ("cut", "studio"), ("sheet", "scenarios")]:
+            made.append(IMAGES / f"{place}/{one}.png")
             Image.open(Path(name) / f"{one}.png").convert("RGB").quantize(255, dither=Image.Dither.NONE).save(made[-1], optimize=True)
     for file in made:
         print(f"{file}: {file.stat().st_size / 1000:.0f} kB")
