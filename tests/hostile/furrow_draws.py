@@ -24,7 +24,7 @@ NOT_DRAWN = {"poisson_ratio", "middle", "edge", "compression_ratio", "seed", "at
 
 def numbers(table, path=()):
     for key, value in table.items():
-        if key == "pulse":  # off, whatever its keys
+        if key in ("pulse", "direction", "noise"):  # off, whatever their keys
             continue
         if isinstance(value, dict):
             yield from numbers(value, (*path, key))
