@@ -194,7 +194,7 @@ def summed(groups: Integers, values: Floats, count: int) -> Floats:
 
 
 class Evened(NamedTuple):
-    """Places of corners on both sides, the cells that moved for that, and those that are no upright prism nevertheless."""
+    """Places of corners on both sides, cells with corners that moved far for that, and those that are no upright prisms nevertheless."""
 
     first: Floats
     second: Floats
@@ -202,19 +202,17 @@ class Evened(NamedTuple):
     flawed: list[int]
 
 
-def evened(first: Floats, second: Floats, middles: Floats, rings: dict[int, list[int]]) -> Evened:
-    """Return places between which each cell is an upright prism of convex polygons.
+def evened(first: Floats, second: Floats, middles: Floats, rings: dict[int, list[int]], far_um: float) -> Evened:
+    """Return places between which each cell is an upright prism of convex polygons; reports moves above `far_um`.
 
     Polygons of flawed cells become more like regular, stretched ones, and like those of the middle height.
     """
     sides = [first.copy(), second.copy()]
     kites = _Kites(rings)
-    moved: set[int] = set()
     for _ in range(MOST_EVENINGS):
         flawed = kites.least_jacobians(sides[0], sides[1], middles) < LEAST_JACOBIAN
         if not flawed.any():
             break
-        moved |= {*kites.cells[flawed].tolist()}
         chosen = flawed[kites.of]
         corners = kites.corner[chosen]
         number = np.bincount(corners, minlength=len(middles))
@@ -224,7 +222,8 @@ def evened(first: Floats, second: Floats, middles: Floats, rings: dict[int, list
             moves = summed(corners, target[chosen], len(middles))[number > 0] / number[number > 0, None] - side[number > 0]
             side[number > 0] += EVENING * moves
     left = kites.least_jacobians(sides[0], sides[1], middles) <= 0
-    return Evened(sides[0], sides[1], sorted(moved), kites.cells[left].tolist())
+    moves = np.maximum(np.linalg.norm(sides[0] - first, axis=1), np.linalg.norm(sides[1] - second, axis=1))
+    return Evened(sides[0], sides[1], np.unique(kites.cells[kites.of[moves[kites.corner] > far_um]]).tolist(), kites.cells[left].tolist())
 
 
 class _Kites:

@@ -23,7 +23,7 @@ class Layer(NamedTuple):
     fitted: NDArray[np.bool_]       # by column: whether labels have its corners on both sides
     cells: list[frozenset[int]]     # that meet at each column
     rings: dict[int, list[int]]
-    evened: list[int]               # cells whose corners were moved, to make upright prisms
+    evened: list[int]               # cells whose corners were moved by more than a voxel, to make upright prisms
     flawed: list[int]               # cells that are none nevertheless
     sides: Sides
     meetings: dict[int, Meetings]   # by side; 0: halfway
@@ -56,7 +56,7 @@ def layer_of(numbers: NDArray[Any], sides: Sides, spacing: Floats, volumes: Floa
     for number, side in enumerate((FIRST, SECOND)):
         of = sides.side == side
         places[number] = settled(extended(places[number], middle, joined), rings, sides.faces.select(of), middles[of], sides.normals[of])
-    even = evened(places[0], places[1], middle, rings)
+    even = evened(places[0], places[1], middle, rings, float(np.prod(spacing) ** (1 / 3)))
     return Layer(even.first, even.second, middle, fitted, columns, rings, even.moved, even.flawed, sides, meetings, width, height, spacing)
 
 

@@ -118,10 +118,10 @@ def test_turned_corners_are_evened_out():
     angles = np.arange(6) * np.pi / 3
     middle = np.column_stack([np.zeros(6), np.sin(angles), np.cos(angles)])
     first, second = middle - [1, 0, 0], middle + [1, 0, 0]
-    same = evened(first, second, middle, {1: [*range(6)]})
+    same = evened(first, second, middle, {1: [*range(6)]}, 0.1)
     assert same.moved == same.flawed == [] and np.array_equal(same.first, first)
     first[0] = -0.5 * first[0] - [1, 0, 0]
-    found = evened(first, second, middle, {1: [*range(6)]})
+    found = evened(first, second, middle, {1: [*range(6)]}, 0.1)
     assert found.moved == [1] and found.flawed == []
     spokes = found.first[:, 1:] - found.first[:, 1:].mean(axis=0)
     ways = np.roll(spokes, -1, axis=0) - spokes
