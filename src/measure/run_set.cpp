@@ -101,13 +101,13 @@ MeasureSet run_set() {
 }
 
 MeasureSet projection_set() {
-  return set_of(
-      "projection", "volume.method = \"projection\"", [](const Subject& s) { return kept_if(s.projects); },
-      {count({"projection_sweeps", sum, "Sweeps of the projection ([paper algorithm](../developers/paper-algorithm.md)).",
-              reported(&StepReport::projection_sweeps)}),
-       count({"cubic_solves", sum, "Cubic equations solved in these sweeps.", reported(&StepReport::cubics)}),
-       count({"cubic_three_real_roots", sum, "Cubic equations with three distinct real roots.",
-              reported(&StepReport::cubics_with_three_roots)})});
+  return set_of("projection", "volume.method = \"projection\"", [](const Subject& s) { return kept_if(s.projects); },
+                {count({"projection_sweeps", sum,
+                        "Sweeps of the projection ([paper algorithm](../developers/paper-algorithm.md)).",
+                        reported(&StepReport::projection_sweeps)}),
+                 count({"cubic_solves", sum, "Cubic equations solved in these sweeps.", reported(&StepReport::cubics)}),
+                 count({"cubic_three_real_roots", sum, "Cubic equations with three distinct real roots.",
+                        reported(&StepReport::cubics_with_three_roots)})});
 }
 
 }  // namespace plica
