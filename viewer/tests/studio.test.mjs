@@ -188,7 +188,7 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
     movie.seek(movie.n_frames - 1)
     apart = ImageChops.difference(movie.convert("RGB"), page.resize(movie.size, Image.Resampling.BOX))
     print(json.dumps([movie.n_frames, max(ImageStat.Stat(apart).mean)]))`], { cwd: folder }));
-  assert.ok(frames > 5 && apart < 6, `${frames} pictures, ${apart} of 255 apart`);
+  assert.ok(frames > 2 && apart < 6, `${frames} pictures, ${apart} of 255 apart`);
 
   await page.click("#clear-selection");
   await paintBelow(page);
