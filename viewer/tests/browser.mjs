@@ -80,6 +80,7 @@ export async function saved(page, button) {
   }
   // Firefox's driver does not tell of downloads: what the page offers is taken instead.
   await page.evaluate(() => {
+    window.offeredName = undefined;
     const urlOf = URL.createObjectURL;
     URL.createObjectURL = (blob) => urlOf((window.offered = blob));
     HTMLAnchorElement.prototype.click = function () { window.offeredName = this.download; };
