@@ -6,7 +6,7 @@ export const candidateRun = -1; // number of its frames, beside those of runs
 
 export class CandidatePanel {
   private source = "";
-  private asked = -1;
+  private asked = ""; // number and kind of the reading that the fields are of
   private readonly questions = element("div", { class: "group" });
   private readonly remarks = element("ul", { id: "remarks" });
   private readonly fault = element("p", { class: "fault", role: "alert" });
@@ -37,11 +37,11 @@ export class CandidatePanel {
     this.fault.textContent = candidate.problem;
     const remarks = candidate.remarks.map((line) => element("li", {}, line));
     this.remarks.replaceChildren(...(isRead && remarks.length === 0 ? [element("li", {}, "No remarks.")] : remarks));
-    if ((isRead || candidate.problem !== "") && candidate.asked !== this.asked) this.fill(candidate);
+    if ((isRead || candidate.problem !== "") && `${candidate.asked} ${candidate.kind}` !== this.asked) this.fill(candidate);
   }
 
   private fill(candidate: Candidate): void {
-    this.asked = candidate.asked;
+    this.asked = `${candidate.asked} ${candidate.kind}`;
     const answers: Record<string, string> = Object.fromEntries(candidate.options.map(({ name, value }) => [name, value]));
     const ask = (options: object) => void this.connection.order("look_at", { source: this.source, options })
       .catch(this.tell);
