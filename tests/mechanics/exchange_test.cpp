@@ -196,7 +196,7 @@ TEST(ExchangeOfCells, LosesEnergyInASheetThatRelaxes) {
   EXPECT_GE(events, 4);
 }
 
-// A cell that walls have been turned away from leaves; state and laws go on without it.
+// A cell that walls have been turned away from leaves; state and laws continue without it.
 TEST(ExtrusionOfCells, LeavesItsPlaceToItsNeighbours) {
   Model model = foam(tissue_from_prisms(honeycomb(7, 7, 3.5, 10), PolygonSplit::diagonals, 1), 0.2);
   State state = rest_state(model);

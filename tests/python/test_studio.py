@@ -188,7 +188,7 @@ def test_acts_are_repeated_to_the_same_bits(session, tmp_path):
 
 
 def test_acts_on_daughters_are_acts_on_all_daughters_of_a_cell_at_rest(tmp_path):
-    """Cells divide twice; a cut of a granddaughter continues a state before that, to the same bits."""
+    """Cells divide twice; a cut of a granddaughter continues a state before that, bitwise identical."""
     row = {"format": 1, "embryo": {"shape": "block", "length_um": 60, "width_um": 20, "cell_height_um": 20, "cells": [3, 1, 1]},
            "region": {"middle": {"ids": [1]}}, "output": {"frame_every_s": 20},
            "cortex": {"apical": {"region": "all", "tension_mN_per_m": 0.5}}, "time": {"end_s": 200},
