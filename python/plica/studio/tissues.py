@@ -203,12 +203,14 @@ class Candidate(Rest):
 
     def state(self) -> Optional[Table]:
         """Return what the page shows beside the picture."""
-        if self.path is None:
-            return None
-        fields = [{**one._asdict(), "value": self.options.get(one.name, one.value)}
-                  for one in OPTIONS.get(self.kind, [])]
-        return {"file": self.path.name, "kind": self.kind, "kinds": ENDINGS[self.path.suffix.lower()],
-                "options": fields, "remarks": self.remarks, "problem": self.problem, "cells": self.cells, "asked": self.asked}
+        with self._wanted:  # else a reading that ends meanwhile is shown in part
+            if self.path is None:
+                return None
+            fields = [{**one._asdict(), "value": self.options.get(one.name, one.value)}
+                      for one in OPTIONS.get(self.kind, [])]
+            return {"file": self.path.name, "kind": self.kind, "kinds": ENDINGS[self.path.suffix.lower()],
+                    "options": fields, "remarks": self.remarks, "problem": self.problem, "cells": self.cells,
+                    "asked": self.asked}
 
     def draft(self) -> Draft:
         """Return the tissue as a scenario. Cells made of an image get a file of their own, beside the image."""
