@@ -28,10 +28,8 @@ using Three = std::array<AtVertex, 3>;
 std::vector<Three> threes_of(const Sheet& sheet) {
   std::map<VertexId, std::vector<AtVertex>> about;
   for (std::size_t c = 0; c < sheet.cells.size(); ++c)
-    for (const Stop& stop : sheet.cells[c].ring) {
-      const VertexId original = sheet.vertices[stop.vertex.index()].original;
-      about[original.valid() ? original : stop.vertex].push_back({CellId(c), stop.vertex});
-    }
+    for (const Stop& stop : sheet.cells[c].ring)
+      about[sheet.original_of(stop.vertex)].push_back({CellId(c), stop.vertex});
   std::vector<Three> threes;
   for (const auto& [vertex, cells] : about)
     if (cells.size() == 3) threes.push_back({cells[0], cells[1], cells[2]});
@@ -87,10 +85,7 @@ struct ShortWalls {
 
 ShortWalls short_walls(const ColumnInput& m) {
   const Sheet& sheet = m.model.tissue.sheet;
-  const auto original = [&](VertexId vertex) {
-    const VertexId its = sheet.vertices[vertex.index()].original;
-    return its.valid() ? its.index() : vertex.index();
-  };
+  const auto original = [&](VertexId vertex) { return sheet.original_of(vertex).index(); };
   std::vector<std::size_t> group(sheet.vertices.size());
   std::iota(group.begin(), group.end(), 0);
   const auto group_of = [&](std::size_t vertex) {

@@ -50,7 +50,7 @@ class Turns {
   }
 
  private:
-  [[nodiscard]] std::size_t place(VertexId vertex) const { return original_of(sheet_, vertex).index(); }
+  [[nodiscard]] std::size_t place(VertexId vertex) const { return sheet_.original_of(vertex).index(); }
   [[nodiscard]] CellId beyond(CellId cell, WallId wall) const { return sheet_.walls[wall.index()].beyond(cell); }
 
   // A cell that would come to the rim must not touch it already, or the tissue would hang together at one vertex.
@@ -115,11 +115,11 @@ class Turner {
   void insert(CellId cell, VertexId own, VertexId other, WallId wall) {
     std::vector<Stop>& ring = sheet_.cells[cell.index()].ring;
     const auto at = std::ranges::find_if(
-        ring, [&](const Stop& stop) { return original_of(sheet_, stop.vertex) == original_of(sheet_, own); });
+        ring, [&](const Stop& stop) { return sheet_.original_of(stop.vertex) == sheet_.original_of(own); });
     std::array<int, 3> periods = sheet_.vertices[other.index()].periods;
     for (int axis = 0; axis < 3; ++axis)
       periods[axis] += sheet_.vertices[at->vertex.index()].periods[axis] - sheet_.vertices[own.index()].periods[axis];
-    ring.insert(at, Stop{remesher_.image(original_of(sheet_, other), periods), wall, 0});
+    ring.insert(at, Stop{remesher_.image(sheet_.original_of(other), periods), wall, 0});
   }
 
   void move_columns(const WallTurn& turn) {

@@ -37,7 +37,7 @@ class Remover {
     if (!remesher_.finish()) return false;
     for (std::size_t i = 0; i < 3; ++i) {
       sheet_.walls[ring[i].wall.index()].cells = {};
-      if (i > 0) dropped.push_back(original_of(sheet_, vertices[i]));
+      if (i > 0) dropped.push_back(sheet_.original_of(vertices[i]));
     }
     return true;
   }
@@ -54,7 +54,7 @@ class Remover {
     std::array<int, 3> periods = sheet_.vertices[kept.index()].periods;
     for (int axis = 0; axis < 3; ++axis)
       periods[axis] += sheet_.vertices[after.vertex.index()].periods[axis] - sheet_.vertices[end.index()].periods[axis];
-    after.vertex = remesher_.image(original_of(sheet_, kept), periods);
+    after.vertex = remesher_.image(sheet_.original_of(kept), periods);
     ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(stop));
   }
 

@@ -22,13 +22,8 @@ std::vector<Vec3> corners_of(const Tissue& tissue, CellId cell, std::span<const 
 
 }  // namespace
 
-VertexId original_of(const Sheet& sheet, VertexId vertex) {
-  const VertexId its = sheet.vertices[vertex.index()].original;
-  return its.valid() ? its : vertex;
-}
-
 const std::vector<NodeId>& column(const Sheet& sheet, VertexId vertex) {
-  return sheet.vertices[original_of(sheet, vertex).index()].nodes;
+  return sheet.vertices[sheet.original_of(vertex).index()].nodes;
 }
 
 Vec3 shift_of(const Tissue& tissue, VertexId vertex) {

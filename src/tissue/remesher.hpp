@@ -9,9 +9,6 @@
 
 namespace plica {
 
-/// Return the vertex of which one is an image; any other itself.
-VertexId original_of(const Sheet& sheet, VertexId vertex);
-
 /// Return the free nodes of a vertex, from base to apex: of its original, if it is an image.
 const std::vector<NodeId>& column(const Sheet& sheet, VertexId vertex);
 

@@ -84,6 +84,11 @@ struct Sheet {
   std::vector<Wall> walls;
   std::vector<Polygon> cells;
 
+  /// Return the vertex of which one is an image; any other itself.
+  [[nodiscard]] VertexId original_of(VertexId vertex) const {
+    const VertexId its = vertices[vertex.index()].original;
+    return its.valid() ? its : vertex;
+  }
   /// Return the number of elements of a cell from base to apex.
   [[nodiscard]] std::size_t level_count(CellId cell) const {
     return vertices[cells[cell.index()].ring.front().vertex.index()].nodes.size() - 1;

@@ -225,6 +225,9 @@ TEST(Tape, RefusesWhatHasNoDerivativesByName) {
             "elasticity: viscosity has no derivatives yet; set dynamics.shear_viscosity_Pa_s = 0");
   EXPECT_EQ(refused({"dynamics.density_kg_per_m3=1000", "time.integrator=\"backward-euler\""}),
             "inertia: this law has no derivatives yet; remove it from the scenario");
+  EXPECT_EQ(refused({"cortex.walls={region=\"all\",faces=\"lateral\",tension_mN_per_m=1}",
+                     "cortex.walls.direction={axis=\"along\",strongest=2}"}),
+            "cortex.walls: direction and noise of lateral faces have no derivatives yet; remove them");
   EXPECT_NE(refused({"division.one.region=\"all\"", "division.one.at_s=1"}).find("cells divide, grow"),
             std::string::npos);
   const Scenario scenario = load_scenario(pulled_block());

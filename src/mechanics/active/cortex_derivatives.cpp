@@ -10,6 +10,8 @@ namespace plica {
 const LawDerivatives& Cortex::derivatives() const {
   if (activation_.is_used())
     refuse_gradient("shape-dependent activity has no derivatives yet; remove its trigger or follow");
+  if (rule_.walls.is_used())
+    refuse_gradient("direction and noise of lateral faces have no derivatives yet; remove them");
   return *this;
 }
 
