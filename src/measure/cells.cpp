@@ -5,7 +5,6 @@
 #include <functional>
 #include <numeric>
 
-#include "mechanics/active/cortex.hpp"
 #include "mechanics/energy.hpp"
 
 namespace plica {
@@ -178,12 +177,7 @@ Vectors driving_forces(const Model& model, const State& state) {
 std::vector<std::pair<std::string, double>> mean_tensions(const Model& model, const State& state) {
   std::vector<std::pair<std::string, double>> result;
   for_laws(model, motionless(state, state.velocities), [&](const Law& law, const Step& law_step) {
-    const auto* cortex = dynamic_cast<const Cortex*>(&law);
-    if (cortex == nullptr || cortex->faces().empty()) return;
-    const std::vector<double> areas = cortex->areas(state.positions), tensions = cortex->tensions(law_step);
-    double sum = 0, area = 0;
-    for (std::size_t f = 0; f < areas.size(); ++f) sum += areas[f] * tensions[f], area += areas[f];
-    result.emplace_back(law.label(), sum / area);
+    if (const auto tension = law.mean_tension(law_step)) result.emplace_back(law.label(), *tension);
   });
   return result;
 }

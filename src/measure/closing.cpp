@@ -13,7 +13,6 @@
 #include "measure/measure_set.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "mechanics/contact/self_contact.hpp"
-#include "mechanics/obstacles/vitelline.hpp"
 #include "tissue/faces.hpp"
 
 namespace plica {
@@ -38,7 +37,7 @@ std::optional<ContactState> contact_state(const Model& model, const State& state
   std::optional<ContactState> result;
   std::vector<Extent> closed;
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
-    const auto* law = dynamic_cast<const SelfContact*>(model.laws[l].get());
+    const SelfContact* law = model.laws[l]->self_contact();
     if (law == nullptr) continue;
     if (!result) result.emplace();
     if (l >= state.internals.size()) continue;
@@ -63,25 +62,28 @@ std::optional<ContactState> contact_state(const Model& model, const State& state
   return result;
 }
 
-std::optional<Enclosed> enclosed(const Model& model, const State& state) {
-  std::optional<Enclosed> found;
+FluidOfModel enclosed_fluid(const Model& model) {
+  FluidOfModel found;
   for_held_constraints(model, [&](const Constraint& constraint, std::size_t first, std::size_t) {
-    if (const auto* held = dynamic_cast<const EnclosedVolume*>(&constraint))
-      found = Enclosed{held->volume(state.positions) / held->targets().front(), state.multipliers[first]};
+    if (const EnclosedFluid* fluid = constraint.enclosed_fluid()) found = {fluid, first};
   });
   for (const auto& law : model.laws)
-    if (const auto* elastic = dynamic_cast<const ElasticVolume*>(law.get()))
-      found = Enclosed{elastic->volume_ratio(state.positions), elastic->pressure(state.positions)};
+    if (const EnclosedFluid* fluid = law->enclosed_fluid()) found = {fluid, std::nullopt};
   return found;
+}
+
+std::optional<Enclosed> enclosed(const Model& model, const State& state) {
+  const auto [fluid, multiplier] = enclosed_fluid(model);
+  if (fluid == nullptr) return std::nullopt;
+  return Enclosed{fluid->volume().ratio(state.positions),
+                  fluid->pressure(state.positions, multiplier ? state.multipliers[*multiplier] : 0)};
 }
 
 std::optional<double> fluid_under_shell_um3(const Model& model, std::span<const Vec3> positions) {
   const std::optional<double> inside = volume_inside_apices(model.tissue, positions);
   if (!inside) return std::nullopt;
   for (const auto& obstacle : model.obstacles)
-    if (const auto* vitelline = dynamic_cast<const Vitelline*>(obstacle.get())) {
-      return vitelline->shell().volume() - *inside;
-    }
+    if (const OuterShape* shell = obstacle->shell()) return shell->volume() - *inside;
   return std::nullopt;
 }
 

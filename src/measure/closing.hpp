@@ -20,6 +20,14 @@ struct ContactState {
 /// Measure self-contact; empty without [self_contact].
 std::optional<ContactState> contact_state(const Model& model, const State& state);
 
+/// Enclosed fluid of a model, null without, and the multiplier of the constraint that holds it.
+struct FluidOfModel {
+  const EnclosedFluid* fluid = nullptr;
+  std::optional<std::size_t> multiplier;
+};
+
+FluidOfModel enclosed_fluid(const Model& model);
+
 struct Enclosed {
   double volume_ratio;  // relative to its target
   double pressure_kPa;

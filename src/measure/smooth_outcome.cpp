@@ -10,6 +10,7 @@
 
 #include "core/errors.hpp"
 #include "measure/cells.hpp"
+#include "measure/closing.hpp"
 #include "measure/furrow.hpp"
 #include "mechanics/constraints/enclosed_volume.hpp"
 #include "tissue/faces.hpp"
@@ -94,17 +95,12 @@ SmoothOutcome furrow_depth(const Tissue& tissue, const FurrowSites& sites, const
 }
 
 std::optional<SmoothOutcome> enclosed_volume_ratio(const Model& model, const Vectors& positions) {
-  const auto of = [&](const EnclosedVolume& volume) {
-    const double target = volume.targets().front();
-    SmoothOutcome outcome{volume.volume(positions) / target, Vectors(positions.size(), Vec3::Zero())};
-    volume.add_forces(positions, std::array{1 / target}, outcome.gradient);
-    return outcome;
-  };
-  for (const auto& constraint : model.constraints)
-    if (const auto* held = dynamic_cast<const EnclosedVolume*>(constraint.get())) return of(*held);
-  for (const auto& law : model.laws)
-    if (const auto* elastic = dynamic_cast<const ElasticVolume*>(law.get())) return of(elastic->volume());
-  return std::nullopt;
+  const EnclosedFluid* fluid = enclosed_fluid(model).fluid;
+  if (fluid == nullptr) return std::nullopt;
+  const EnclosedVolume& volume = fluid->volume();
+  SmoothOutcome outcome{volume.ratio(positions), Vectors(positions.size(), Vec3::Zero())};
+  volume.add_forces(positions, std::array{1 / volume.targets().front()}, outcome.gradient);
+  return outcome;
 }
 
 SmoothOutcome apical_area_ratio(const Tissue& tissue, const MonitoredCells& cells, const Vectors& positions) {

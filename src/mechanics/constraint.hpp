@@ -72,6 +72,9 @@ class Constraint {
                                                                        const TissueChange& /*change*/) const {
     return {multipliers.begin(), multipliers.end()};
   }
+
+  /// Return the fluid whose volume it holds; null for others.
+  [[nodiscard]] virtual const EnclosedFluid* enclosed_fluid() const { return nullptr; }
 };
 
 }  // namespace plica

@@ -23,7 +23,9 @@ struct Tissue;
 struct Model;
 struct TissueChange;
 struct CellPattern;
+class EnclosedFluid;
 class LawDerivatives;
+class SelfContact;
 struct GrowthTensor;
 template <class Value>
 struct ByCell;
@@ -259,6 +261,12 @@ class Law {
   /// Return its derivatives for gradients of runs (derivatives.hpp). Throws NoGradient, with what the user can do, if
   /// it has none.
   [[nodiscard]] virtual const LawDerivatives& derivatives() const;
+
+  /// What measures read of a law; null, or empty, for others: its contact pairs, the fluid that it encloses, and the
+  /// mean tension of its faces, nN/um.
+  [[nodiscard]] virtual const SelfContact* self_contact() const { return nullptr; }
+  [[nodiscard]] virtual const EnclosedFluid* enclosed_fluid() const { return nullptr; }
+  [[nodiscard]] virtual std::optional<double> mean_tension(const Step& /*step*/) const { return std::nullopt; }
 
   /// Whether a sheet of few of its elements through the height bends too far (measure/bending_error.hpp).
   [[nodiscard]] virtual bool overbends() const { return false; }

@@ -33,6 +33,9 @@ class Obstacle {
 
   [[nodiscard]] virtual std::unique_ptr<Obstacle> after_division(const Tissue& tissue,
                                                                  const TissueChange& change) const = 0;
+
+  /// Return the shape of a shell around the tissue; null for others.
+  [[nodiscard]] virtual const OuterShape* shell() const { return nullptr; }
 };
 
 /// Nodes of all obstacles of a model, obstacle by obstacle: the layout of State::obstacle_forces and on_obstacle. A

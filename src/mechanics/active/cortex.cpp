@@ -253,6 +253,14 @@ std::vector<double> Cortex::tensions(const Step& step) const {
   return tensions;
 }
 
+std::optional<double> Cortex::mean_tension(const Step& step) const {
+  if (faces_.empty()) return std::nullopt;
+  const std::vector<double> of_faces = tensions(step), now = areas(step.positions);
+  double sum = 0, area = 0;
+  for (std::size_t f = 0; f < now.size(); ++f) sum += now[f] * of_faces[f], area += now[f];
+  return sum / area;
+}
+
 double Cortex::energy(const Step& step) const {
   take_factors(step);
   const std::vector<double> now = areas(step.positions);

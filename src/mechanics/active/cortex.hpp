@@ -95,6 +95,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   /// Areas (um^2) and tensions (nN/um) of the faces at the end of a step.
   [[nodiscard]] std::vector<double> areas(std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<double> tensions(const Step& step) const;
+  [[nodiscard]] std::optional<double> mean_tension(const Step& step) const override;  // over the area
 
  private:
   friend BatchLaw;

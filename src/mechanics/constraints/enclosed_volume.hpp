@@ -10,9 +10,20 @@
 
 namespace plica {
 
+class EnclosedVolume;
+
+/// Fluid in an enclosed volume, as measures and outcomes see it.
+class EnclosedFluid {
+ public:
+  virtual ~EnclosedFluid() = default;
+  [[nodiscard]] virtual const EnclosedVolume& volume() const = 0;
+  /// Return the inner pressure, kPa; `multiplier`: of the constraint that holds the volume, else 0.
+  [[nodiscard]] virtual double pressure(std::span<const Vec3> positions, double multiplier) const = 0;
+};
+
 /// Constraint that holds the enclosed volume at its reference value; the multiplier is the inner pressure, kPa. The
 /// sheet must be closed, or a slice closed by planes across x or by mirror planes, in which its nodes must stay.
-class EnclosedVolume final : public Constraint {
+class EnclosedVolume final : public Constraint, public EnclosedFluid {
  public:
   explicit EnclosedVolume(const Tissue& tissue);
   /// Make the constraint with another target volume, um^3.
@@ -38,8 +49,16 @@ class EnclosedVolume final : public Constraint {
   [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const TissueChange& change,
                                                            std::span<const Vec3> positions) const override;
 
-  /// Return the volume, um^3.
+  /// Return the volume, um^3, and V/V_0, over the target.
   [[nodiscard]] double volume(std::span<const Vec3> positions) const;
+  [[nodiscard]] double ratio(std::span<const Vec3> positions) const { return volume(positions) / target_; }
+
+  [[nodiscard]] const EnclosedFluid* enclosed_fluid() const override { return this; }
+  [[nodiscard]] const EnclosedVolume& volume() const override { return *this; }
+  [[nodiscard]] double pressure(std::span<const Vec3> /*positions*/, double multiplier) const override {
+    return multiplier;
+  }
+
   [[nodiscard]] std::size_t facet_count() const { return facets_.size(); }
 
   /// Whether the basal surface of a tissue is closed, or that of a slice or one side of such.
@@ -64,7 +83,7 @@ class EnclosedVolume final : public Constraint {
 
 /// Compressible enclosed volume: energy K V_0/2 (V/V_0 - 1)^2, inner pressure K (1 - V/V_0). The assembled tangent
 /// omits the pressure term, which joins all nodes; the semidefinite tangent is zero otherwise.
-class ElasticVolume final : public Law {
+class ElasticVolume final : public Law, public EnclosedFluid {
  public:
   /// Make the law with `bulk_modulus` K, kPa, and `rest_volume` V_0, um^3.
   ElasticVolume(const Tissue& tissue, double bulk_modulus) : volume_(tissue), bulk_modulus_(bulk_modulus) {}
@@ -74,7 +93,7 @@ class ElasticVolume final : public Law {
   [[nodiscard]] std::string_view name() const override { return "enclosed volume"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<ElasticVolume>(*this); }
   [[nodiscard]] double energy(const Step& step) const override {
-    const double strain = volume_ratio(step.positions) - 1;
+    const double strain = volume_.ratio(step.positions) - 1;
     return 0.5 * bulk_modulus_ * volume_.targets()[0] * strain * strain;
   }
   void add_forces(const Step& step, std::span<Vec3> forces) const override {
@@ -105,14 +124,10 @@ class ElasticVolume final : public Law {
     return std::make_unique<ElasticVolume>(tissue, is_part ? 0 : bulk_modulus_, volume_.targets()[0]);
   }
 
-  [[nodiscard]] const EnclosedVolume& volume() const { return volume_; }
-  /// Return V/V_0.
-  [[nodiscard]] double volume_ratio(std::span<const Vec3> positions) const {
-    return volume_.volume(positions) / volume_.targets()[0];
-  }
-  /// Return the inner pressure, kPa.
-  [[nodiscard]] double pressure(std::span<const Vec3> positions) const {
-    return bulk_modulus_ * (1 - volume_ratio(positions));
+  [[nodiscard]] const EnclosedFluid* enclosed_fluid() const override { return this; }
+  [[nodiscard]] const EnclosedVolume& volume() const override { return volume_; }
+  [[nodiscard]] double pressure(std::span<const Vec3> positions, double /*multiplier*/ = 0) const override {
+    return bulk_modulus_ * (1 - volume_.ratio(positions));
   }
 
  private:

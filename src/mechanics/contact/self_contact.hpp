@@ -96,6 +96,7 @@ class SelfContact final : public Law, public LawDerivatives {
   [[nodiscard]] static std::span<const Pair> pairs_of(std::span<const double> internal);
   [[nodiscard]] const std::vector<Point>& points() const { return points_; }
   [[nodiscard]] CellSide side() const { return rule_.side; }
+  [[nodiscard]] const SelfContact* self_contact() const override { return this; }
 
  private:
   struct Surface;

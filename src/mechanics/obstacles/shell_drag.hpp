@@ -25,7 +25,7 @@ class ShellDrag final : public NodeLaw<ShellDrag>, public LawDerivatives {
  private:
   friend NodeLaw;
   static constexpr bool dissipates = true;
-  [[nodiscard]] ShellDrag remade(const Tissue& tissue) const { return {tissue, shell_.shell(), drag_}; }
+  [[nodiscard]] ShellDrag remade(const Tissue& tissue) const { return {tissue, *shell_.shell(), drag_}; }
   template <class Take>
   void resist(const Step& step, std::size_t node, const Take& take) const {
     if (coefficients_[node] == 0) return;

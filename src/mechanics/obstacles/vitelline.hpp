@@ -27,7 +27,7 @@ class Vitelline final : public Obstacle {
     return std::make_unique<Vitelline>(tissue, shell_);
   }
 
-  [[nodiscard]] const OuterShape& shell() const { return shell_; }
+  [[nodiscard]] const OuterShape* shell() const override { return &shell_; }
 
  private:
   OuterShape shell_;
