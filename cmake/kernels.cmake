@@ -17,7 +17,7 @@ set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS -ffp-co
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   add_kernels(generic 2)
   add_kernels(avx2 4 -mavx2 -mfma)
-  # Tuned for the first processors with AVX-512, which is 5 % faster on Zen 4 too (docs/developers/performance-notebook.md).
+  # Tuned for the first processors with AVX-512, which is 5 % faster on Zen 4 too (docs/decisions/0015-speed.md).
   # GCC 12 warns of a vector that its own header leaves undefined on purpose.
   add_kernels(avx512 8 -mavx512f -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512 -mtune=skylake-avx512
               "$<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized;-Wno-maybe-uninitialized>")

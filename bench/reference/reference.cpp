@@ -1,4 +1,4 @@
-// The reference scene, as bench/data/README.md has it, run and timed (docs/developers/performance-notebook.md).
+// The reference scene, as bench/data/README.md has it, run and timed (docs/developers/performance-benchmarks.md).
 #include <omp.h>
 #include <sys/resource.h>
 

@@ -3,9 +3,7 @@ import math
 from pathlib import Path
 
 BEGIN, END = "<!-- Below: the output of bench/run. -->\n", "<!-- Above: the output of bench/run. -->\n"
-# Which tables a document has between these marks.
-DOCUMENTS = {"docs/developers/performance-benchmarks.md": ("runs", "furrows", "steps"),
-             "docs/developers/performance-notebook.md": ("kernels",)}
+DOCUMENT = "docs/developers/performance-benchmarks.md"  # has the tables between these marks
 
 
 def number(value, digits=3):
@@ -136,20 +134,18 @@ TEXTS = {"runs": ("The whole Drosophila run", runs_text), "furrows": ("Furrows t
          "steps": ("One step", steps_text), "kernels": ("Kernels", kernels_text)}
 
 
-def page(measured, arguments, parts=tuple(TEXTS)):
+def page(measured, arguments):
     text = machine_text(measured["machine"], arguments)
-    for part in parts:
-        heading, text_of = TEXTS[part]
+    for part, (heading, text_of) in TEXTS.items():
         if measured[part]:
             text += f"### {heading}\n\n" + text_of(measured[part])
     return text
 
 
 def update(root, measured, arguments):
-    """Each document gets its tables, unless nothing was measured for it."""
-    for document, parts in DOCUMENTS.items():
-        if any(measured[part] for part in parts):
-            put_into(Path(root) / document, page(measured, arguments, parts))
+    """The document gets the tables, unless nothing was measured."""
+    if any(measured[part] for part in TEXTS):
+        put_into(Path(root) / DOCUMENT, page(measured, arguments))
 
 
 def put_into(document, text):

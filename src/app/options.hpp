@@ -47,7 +47,7 @@ double snapshot_time_s(const std::string& time, const std::vector<double>& times
 ///
 /// May restart the program, so call it before anything is printed or written. GCC's OpenMP lets idle threads spin for
 /// milliseconds before they sleep; on a busy machine threads with work wait for these (251 s instead of 19 s,
-/// docs/developers/performance-notebook.md). The spin time is read from the environment before main(). `scenario`: file
+/// docs/decisions/0015-speed.md). The spin time is read from the environment before main(). `scenario`: file
 /// that has been read, or name; no restart for a pipe, which cannot be read twice.
 void use_threads(int asked, std::size_t elements, const std::string& scenario);
 

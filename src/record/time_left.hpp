@@ -1,5 +1,5 @@
 // Remaining wall time of a run: by the work that an earlier run of the scenario, or the built-in scenario it is based
-// on, took over simulated time; else by the trend of its own steps. docs/developers/performance-notebook.md has
+// on, took over simulated time; else by the trend of its own steps. docs/decisions/0015-speed.md has
 // measured errors.
 #pragma once
 

@@ -2,7 +2,7 @@
 // colour share no node (including nodes that theirs hang on). Colours run in sequence; the chunks of one colour are
 // distributed over threads. Elements thus add to nodes without locks, and sums have the same order for any number of
 // threads. Chunks are as long as possible while there are enough to distribute
-// (docs/developers/performance-notebook.md).
+// (docs/decisions/0015-speed.md).
 #pragma once
 
 #include <omp.h>

@@ -139,7 +139,7 @@ class GuardedDirections final : public NewtonDirections {
 std::unique_ptr<NewtonDirections> make_directions(const Model& model, LinearMethod method,
                                                   std::function<bool()> stop_requested) {
   // Sizes at which the factor of a sheet takes as long as multigrid, and where that of the indefinite system takes more
-  // room than a usual machine has (docs/developers/performance-notebook.md). Multigrid finds the long thin elements of
+  // room than a usual machine has (docs/decisions/0015-speed.md). Multigrid finds the long thin elements of
   // divided cells hard.
   constexpr std::size_t most_nodes_of_cholesky = 20'000, most_nodes_when_divided = 50'000,
                         most_nodes_of_direct = 60'000;
