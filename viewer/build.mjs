@@ -53,7 +53,7 @@ async function make(file, folder, licences) {
   console.log(`${file}: ${Math.round(html.length / 1024)} kB`);
 }
 
-const [three, uplot] = await Promise.all([licence("three"), licence("uplot")]);
+const [three, uplot, ...ofMovies] = await Promise.all(["three", "uplot", "modern-gif", "modern-palette"].map(licence));
 await make(ofRuns, "", [three, uplot]);
 await make(ofStudy, "study", [uplot]);
-await make(ofStudio, "studio", [three, uplot]);
+await make(ofStudio, "studio", [three, uplot, ...ofMovies]);

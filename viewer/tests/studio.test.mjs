@@ -176,19 +176,25 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.waitForFunction(() => /^[1-9]/.test(document.querySelector("#time-text").textContent) &&
     document.querySelector("#plots canvas"));
 
-  // The movie's last picture is that of the page.
+  // The movie's last picture is that of the page; each has a scale bar, and its own time.
   for (const kind of ["picture", "movie"]) {
     const { name, bytes } = await saved(page, `#save-${kind}`);
     writeFileSync(join(folder, name), bytes);
   }
-  const [frames, apart] = JSON.parse(execFileSync(python, ["-c", `if True:
+  const [frames, apart, bars, times] = JSON.parse(execFileSync(python, ["-c", `if True:
     import json
-    from PIL import Image, ImageChops, ImageStat
+    from PIL import Image, ImageChops, ImageSequence, ImageStat
     movie, page = Image.open("plica.gif"), Image.open("plica.png").convert("RGB")
-    movie.seek(movie.n_frames - 1)
-    apart = ImageChops.difference(movie.convert("RGB"), page.resize(movie.size, Image.Resampling.BOX))
-    print(json.dumps([movie.n_frames, max(ImageStat.Stat(apart).mean)]))`], { cwd: folder }));
+    pictures = [one.convert("RGB") for one in ImageSequence.Iterator(movie)]
+    apart = ImageChops.difference(pictures[-1], page.resize(movie.size, Image.Resampling.BOX))
+    legend = 54
+    bars = [one.crop((12, one.height - legend - 14, 52, one.height - legend - 11)).convert("L").getextrema()[1] < 80
+            for one in pictures]
+    times = [one.crop((8, 8, 140, 28)).convert("L").tobytes() for one in pictures]
+    print(json.dumps([len(pictures), max(ImageStat.Stat(apart).mean), sum(bars), len(set(times))]))`], { cwd: folder }));
   assert.ok(frames > 2 && apart < 6, `${frames} pictures, ${apart} of 255 apart`);
+  assert.equal(bars, frames, "each picture of the movie has a scale bar");
+  assert.ok(times > 2 && times <= frames, `${times} times in ${frames} pictures`);
 
   await page.click("#clear-selection");
   await paintBelow(page);

@@ -1,4 +1,5 @@
 // The studio's page: a draft at rest, its runs, and acts on them, in the view that reports have.
+import { Encoder } from "modern-gif";
 import { type Chart, Chart as TimeChart, seriesCharts } from "../charts";
 import { save } from "../controls";
 import { byId, element } from "../dom";
@@ -12,7 +13,6 @@ import { followTheme } from "../theme";
 import { CandidatePanel, candidateRun } from "./candidate";
 import { type Candidate, Connection, type DraftState, Problem, type RunsState, type Table } from "./connection";
 import { Forms } from "./forms";
-import { Gif } from "./gif";
 import { LiveRun, LiveTopology } from "./live_run";
 import { type Frame, type Message, rangeOf, type Shape } from "./messages";
 import { Painting, type Stroke } from "./painting";
@@ -25,6 +25,7 @@ const chartsApart = 700; // ms
 const mostCellsWithEdges = 5000;
 const movieLength = 8000; // ms
 const mostPictures = 80; // of a movie
+const movieWidth = 1000; // pixels, at most
 const difference: Field = {
   name: "difference", label: "distance from the run beside, µm", unit: "", on_nodes: true, scale: "from-zero",
   map: "from_zero", low: 0, high: 1,
@@ -463,20 +464,18 @@ class Studio {
     if (!run || !this.views) return this.tell("A movie shows a run; choose one under Runs.");
     const button = byId("save-movie") as HTMLButtonElement;
     button.disabled = this.isRecording = true;
-    const pictureAt = async (part: number) => {
-      await this.shownAt(part * run.time_s);
-      const canvas = await this.views!.drawing(1);
-      return canvas.getContext("2d")!.getImageData(0, 0, canvas.width, canvas.height);
-    };
     await this.shownAt(null);
+    const { width, height } = await this.views.drawing(1);
+    const scale = Math.min(movieWidth / width, 1);
+    const movie = new Encoder({ width: Math.round(scale * width), height: Math.round(scale * height) });
     const last = Math.max(Math.min(this.frameCount, mostPictures) - 1, 1);
-    const gif = new Gif([await pictureAt(0), await pictureAt(0.5), await pictureAt(1)]);
     const shownFor = Math.max(10 * Math.round(movieLength / last / 10), 40);
     for (let i = 0; i <= last && this.chosen.run === run.number; ++i) {
-      gif.add(await pictureAt(i / last), i === last ? 2000 : shownFor);
+      await this.shownAt((i / last) * run.time_s);
+      await movie.encode({ data: await this.views.drawing(1), delay: i === last ? 2000 : shownFor });
       button.textContent = `Movie ${Math.round((100 * i) / last)} %`;
     }
-    save("plica.gif", gif.end());
+    save("plica.gif", await movie.flush("blob"));
     this.at = null;
     this.ask();
     button.textContent = "Movie";
