@@ -2,7 +2,9 @@
 
 #include <metis.h>
 
+#include <csignal>
 #include <mutex>
+#include <new>
 #include <numeric>
 #include <stdexcept>
 
@@ -37,8 +39,17 @@ std::vector<int> elimination_order(const SparsePattern& lower) {
   std::vector<idx_t> rows(size), places(size);
   static std::mutex one_at_a_time;  // METIS draws from the C library's one sequence of random numbers
   const std::lock_guard lock(one_at_a_time);
-  if (METIS_NodeND(&size, starts.data(), adjacent.data(), nullptr, options, rows.data(), places.data()) != METIS_OK)
-    throw std::runtime_error("METIS could not order the matrix");
+  const auto order_them = [&] {
+    return METIS_NodeND(&size, starts.data(), adjacent.data(), nullptr, options, rows.data(), places.data());
+  };
+  int result = order_them();
+  if (result == METIS_ERROR) {
+    // While METIS works, it takes SIGTERM for an error of its own. If it succeeds now, somebody else sent the signal.
+    result = order_them();
+    if (result == METIS_OK) std::raise(SIGTERM);
+  }
+  if (result == METIS_ERROR_MEMORY) throw std::bad_alloc();
+  if (result != METIS_OK) throw std::runtime_error("METIS could not order the matrix");
   return {places.begin(), places.end()};
 }
 
