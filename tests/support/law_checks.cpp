@@ -1,5 +1,6 @@
 #include "support/law_checks.hpp"
 
+#include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/derivatives.hpp"
 #include "mechanics/energy.hpp"
 
@@ -208,7 +209,7 @@ void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um,
 
     const std::size_t cells = tissue.cells.size();
     const std::vector<double> ones(cells, 1.0);
-    if (!law.derivatives().with_strengths(ones)) continue;
+    if (!law.pattern() || law.pattern()->cells.empty() || !derivatives.with_strengths(ones)) continue;
     std::vector<double> of_cells(cells, 0.0);
     derivatives.add_strength_gradient(motion.step(), adjoint, of_cells);
     for (std::size_t c = 0; c < cells; ++c) {

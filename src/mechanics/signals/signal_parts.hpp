@@ -59,15 +59,22 @@ struct Signals::Diffusion {
     factor.compute(matrix);
   }
 
-  // Solve for concentrations from the right-hand side, an amount per cell.
-  [[nodiscard]] std::vector<double> solve(std::span<const double> amounts, std::span<const double> volumes) const {
-    std::vector<double> c(amounts.begin(), amounts.end());
+  // Solve the system of its matrix; right side: one number per cell.
+  [[nodiscard]] std::vector<double> solution(std::span<const double> right, std::span<const double> volumes) const {
+    std::vector<double> c(right.begin(), right.end());
     if (!diffuses) {
       for (std::size_t i = 0; i < c.size(); ++i) c[i] /= growth * volumes[i];
       return c;
     }
     const auto n = static_cast<Eigen::Index>(c.size());
-    Eigen::VectorXd::Map(c.data(), n) = factor.solve(Eigen::VectorXd::Map(amounts.data(), n)).eval();
+    Eigen::VectorXd::Map(c.data(), n) = factor.solve(Eigen::VectorXd::Map(right.data(), n)).eval();
+    return c;
+  }
+
+  // Return concentrations from the right side, an amount per cell.
+  [[nodiscard]] std::vector<double> solve(std::span<const double> amounts, std::span<const double> volumes) const {
+    std::vector<double> c = solution(amounts, volumes);
+    if (!diffuses) return c;
     // Rounding of the solution, which fast diffusion enlarges, must not add up to amounts lost.
     double expected = 0, sum = 0;
     for (std::size_t i = 0; i < c.size(); ++i) expected += amounts[i], sum += growth * volumes[i] * c[i];

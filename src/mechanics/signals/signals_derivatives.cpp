@@ -25,7 +25,7 @@ Signals::Values Signals::pull_back(const Tissue& tissue, const Geometry& geometr
     Values by_amounts;
     for (std::size_t s = 0; s < signals; ++s) {
       const Diffusion& diffusion = *parts.diffusions[s];
-      const CellArray& y = by_amounts.emplace_back(diffusion.solve(gradient[s], volumes));
+      const CellArray& y = by_amounts.emplace_back(diffusion.solution(gradient[s], volumes));
       for (std::size_t i = 0; i < cells; ++i)
         by_geometry.volumes[i] +=
             y[i] * (from[s][i] + diffusion.rate_s * (rules_[s].sources[i] + rates[s][i]) - diffusion.growth * to[s][i]);

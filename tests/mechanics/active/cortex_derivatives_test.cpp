@@ -53,7 +53,8 @@ TEST(CortexDerivatives, OfShapeDependentActivityAgreeWithFiniteDifferences) {
                               : c < 2               ? 0.3 + 0.2 * static_cast<double>(c)
                                                     : ShapeActivation::not_yet;
       SCOPED_TRACE(testing::Message() << static_cast<int>(measure) << ", " << static_cast<int>(kind));
-      check_law_derivatives(recorded, tissue, 2, internal);
+      check_law_derivatives(recorded, tissue, 2, internal,
+                            1e-6);  // differences of times by measures that hardly change
     }
 }
 
