@@ -52,10 +52,15 @@ def record(
     Raises
     ------
     ValueError
-        If a law of the scenario has no derivatives (viscosity, relaxing interiors, triggers), or cells divide. The message
-        names it.
+        If a law of the scenario has no derivatives (inertia, jumps at triggers), or cells divide or exchange neighbours. The
+        message names it.
     NumericsError
         If no step converges.
+
+    Notes
+    -----
+    The run is that of `Simulation`, except that a cell with a trigger starts where its measure crosses the threshold,
+    interpolated linearly within the step, instead of at the end of the step.
 
     Examples
     --------

@@ -117,24 +117,10 @@ SmoothOutcome apical_area_ratio(const Tissue& tissue, const MonitoredCells& cell
 
 void add_area_gradient(const Tissue& tissue, CellSide side, std::span<const Vec3> positions,
                        std::span<const double> weights, std::span<Vec3> gradient) {
-  const double g = 1 / std::sqrt(3.0);
   for (const Facet& facet : tissue.facets(side)) {
     const double weight = weights[facet.cell.index()];
     if (weight == 0) continue;
-    // At Gauss points (s, t), with a = dx/ds and b = dx/dt, area is the sum of |a x b|.
-    const std::array<Vec3, 4> x = gather(positions, facet);
-    std::array<Vec3, 4> by_corner = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
-    for (const double s : {-g, g})
-      for (const double t : {-g, g}) {
-        const Vec3 a = 0.25 * ((1 - t) * (x[1] - x[0]) + (1 + t) * (x[2] - x[3]));
-        const Vec3 b = 0.25 * ((1 - s) * (x[3] - x[0]) + (1 + s) * (x[2] - x[1]));
-        const Vec3 normal = a.cross(b).stableNormalized();
-        const Vec3 by_a = 0.25 * b.cross(normal), by_b = 0.25 * normal.cross(a);
-        by_corner[0] -= (1 - t) * by_a + (1 - s) * by_b;
-        by_corner[1] += (1 - t) * by_a - (1 + s) * by_b;
-        by_corner[2] += (1 + t) * by_a + (1 + s) * by_b;
-        by_corner[3] += (1 - s) * by_b - (1 + t) * by_a;
-      }
+    const std::array<Vec3, 4> by_corner = facet_area_gradient(gather(positions, facet));
     for (int i = 0; i < 4; ++i) gradient[facet.nodes[i].index()] += weight * by_corner[i];
   }
 }

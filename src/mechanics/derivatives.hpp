@@ -46,8 +46,16 @@ class LawDerivatives {
   virtual void add_internal_gradient(const Step& /*step*/, std::span<const double> /*next*/,
                                      std::span<const double> /*adjoint*/, std::span<Vec3> /*positions*/,
                                      const BeginningGradient& /*gradient*/) const {}
-  /// Whether next_internal depends on parameters of the law, beside positions.
-  [[nodiscard]] virtual bool internal_has_parameters() const { return true; }
+  /// Return next_internal(step) of `law`, which has these derivatives and maybe other parameters than the run, with
+  /// cells in the same regime as in `next`, that of the run; empty if no parameter acts on it.
+  [[nodiscard]] virtual std::vector<double> next_internal_like(const Law& law, const Step& step,
+                                                               std::span<const double> /*next*/) const {
+    return law.next_internal(step);
+  }
+
+  /// Move the gradient by what follows signals in an internal state (Law::with_signals), to that by the signals.
+  virtual void move_to_signals(std::span<double> /*by_internal*/, std::span<const CellArray> /*signals*/,
+                               std::span<CellArray> /*by_signals*/) const {}
 
   /// Add the derivatives of adjoint . forces by a factor on the strength of each cell, to which forces are
   /// proportional, for laws with strengths.
@@ -56,7 +64,16 @@ class LawDerivatives {
 
   /// Return the law with the strengths of its cells times these factors; null for laws without strengths.
   [[nodiscard]] virtual std::unique_ptr<Law> with_strengths(std::span<const double> /*factors*/) const { return {}; }
+
+  /// Return the law as recorded runs have it, if in others its memory is a step function of positions; else null.
+  [[nodiscard]] virtual std::unique_ptr<Law> smooth() const { return {}; }
 };
+
+/// Add the gradient of adjoint . forces by previous and earlier positions for a law with a viscous energy
+/// |q(x) - q_before|^2 of any quantity q, beside one of positions at the end of the step only.
+void add_viscous_gradient(const Law& law, const Step& step, std::span<const Vec3> adjoint,
+                          const BeginningGradient& gradient);
+
 /// Return a law with the strengths of its cells times these factors. UsageError if it has none.
 std::unique_ptr<Law> with_strengths(const Law& law, std::span<const double> factors);
 

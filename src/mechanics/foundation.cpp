@@ -100,6 +100,12 @@ void Foundation::add_tangent(const Step& step, TangentSink& tangent) const {
   }
 }
 
+void Foundation::add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                                    const BeginningGradient& gradient) const {
+  for (const Support& support : supports_)
+    gradient.add_before(support.node, damper(support, step) * resisted(support, adjoint[support.node]));
+}
+
 double Foundation::rounding(const Step& step, double position_rounding) const {
   double sum = 0;
   for (const Support& support : supports_) {

@@ -9,7 +9,7 @@
 
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/active/program.hpp"
-#include "mechanics/law.hpp"
+#include "mechanics/derivatives.hpp"
 
 namespace plica {
 
@@ -25,7 +25,7 @@ struct FoundationRule {
 
 /// Foundation law. Cell strengths scale stiffness and drag. It owns its anchors: after a change of the tissue, new
 /// nodes are anchored at the mean of those that they lie between.
-class Foundation final : public Law {
+class Foundation final : public Law, public LawDerivatives {
  public:
   Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule rule);
 
@@ -49,6 +49,9 @@ class Foundation final : public Law {
   [[nodiscard]] std::vector<double> program_points_s() const override { return rule_.program.times_s(); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return rule_.program.jumps_s(); }
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
+  void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                          const BeginningGradient& gradient) const override;
 
  private:
   struct Support {  // of a node

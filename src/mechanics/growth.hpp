@@ -63,6 +63,8 @@ class CellGrowth final : public Law {
   void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}
   void add_tangent(const Step&, TangentSink&) const override {}
 
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }
+
   void grow(std::span<const double> internal, double time_s, std::vector<GrowthTensor>& tensors) const override;
   [[nodiscard]] bool is_growing(std::span<const double> internal, double time_s) const override;
 

@@ -3,6 +3,7 @@
 // search has a merit function.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <span>
@@ -55,6 +56,12 @@ struct Step {
   [[nodiscard]] auto before(const Quantity& q) const -> decltype(q(previous_positions)) {
     if (ahead == 0) return q(previous_positions);
     return extrapolated(q(previous_positions), q(earlier_positions));
+  }
+  /// Return its length, s: of a step w times as long as the last, rate_s is h (1 + w)/(1 + 2 w) and ahead
+  /// w^2/(1 + 2 w).
+  [[nodiscard]] double length_s() const {
+    const double w = ahead + std::sqrt(ahead * (1 + ahead));
+    return rate_s * (1 + 2 * w) / (1 + w);
   }
   /// Return q_before from the values at the beginning of this step and of the step before.
   template <class Value>

@@ -81,6 +81,17 @@ std::vector<std::vector<double>> next_internals(const Model& model, const Step& 
   return internals;
 }
 
+std::optional<SignalFailure> advance_signals(const Model& model, const State& before, State& after) {
+  after.signals = before.signals;
+  if (model.signals.empty()) return std::nullopt;
+  const std::vector<double> volumes_before = model.volumes.volumes(before.positions),
+                            volumes = model.volumes.volumes(after.positions);
+  auto failure = model.signals.advance(model.tissue, {volumes_before, volumes, after.positions},
+                                       after.time_s - before.time_s, after.signals);
+  if (!failure) follow_signals(model, after);
+  return failure;
+}
+
 void follow_signals(const Model& model, State& state) {
   if (model.signals.empty()) return;
   for (std::size_t l = 0; l < model.laws.size(); ++l)

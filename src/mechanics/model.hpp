@@ -145,6 +145,10 @@ struct State {
   }
 };
 
+/// Advance the signals from one state to another, whose positions and time are known, and let activities of laws follow
+/// them. On failure they are unchanged. `model`: at the end of the step.
+std::optional<SignalFailure> advance_signals(const Model& model, const State& before, State& after);
+
 /// Let the activities of laws follow the signals of the state.
 void follow_signals(const Model& model, State& state);
 

@@ -381,20 +381,12 @@ bool Simulation::has_stalled() {
 
 // Advance the signals to the end of a step, on its cells. False: they have none, and the run fails.
 bool Simulation::advance_signals(const Model& model, State& next) {
-  next.signals = now_.state.signals;
-  if (model.signals.empty()) return true;
-  const std::vector<double> before = model.volumes.volumes(now_.state.positions),
-                            after = model.volumes.volumes(next.positions);
-  const auto failure = model.signals.advance(model.tissue, {before, after, next.positions},
-                                             next.time_s - now_.state.time_s, next.signals);
-  if (failure) {
-    failed_cell_ = id_of(model, failure->cell);
-    failure_ =
-        fmt::format("{} in cell {} at t = {:g} s; {}", failure->problem, *failed_cell_, next.time_s, failure->remedy);
-    return false;
-  }
-  follow_signals(model, next);
-  return true;
+  const auto failure = plica::advance_signals(model, now_.state, next);
+  if (!failure) return true;
+  failed_cell_ = id_of(model, failure->cell);
+  failure_ =
+      fmt::format("{} in cell {} at t = {:g} s; {}", failure->problem, *failed_cell_, next.time_s, failure->remedy);
+  return false;
 }
 
 // Advance the state by one step; `before` receives the old state. Empty, with the state unchanged, on failure or stop.

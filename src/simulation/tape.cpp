@@ -32,12 +32,19 @@ std::map<std::size_t, std::shared_ptr<const Law>> scale_strengths(Simulation::Pa
   return unscaled;
 }
 
-void require_same_model(const Simulation& simulation, std::uint64_t revision) {
-  if (simulation.solved_model().revision != revision)
-    throw NoGradient(
-        fmt::format("at t = {:g} s cells divide, grow or exchange neighbours, through which there are no "
-                    "gradients yet; end the run before, or remove this from the scenario",
-                    simulation.time_s()));
+/// Whether cells have divided or exchanged neighbours.
+struct ChangesOfTissue final : SimulationListener {
+  void cells_divided(const TissueChange& /*change*/) override { are_made = true; }
+  bool are_made = false;
+};
+
+/// Return the parts of a simulation, with the laws of recorded runs (LawDerivatives::smooth).
+Simulation::Parts smooth_parts_of(const Scenario& scenario) {
+  Simulation::Parts parts = parts_of(scenario);
+  require_derivatives(*parts.model);
+  for (std::unique_ptr<Law>& law : parts.model->laws)
+    if (std::unique_ptr<Law> smooth = law->derivatives().smooth()) law = std::move(smooth);
+  return parts;
 }
 
 RunMethod method_of(const RunControls& controls) {
@@ -52,23 +59,28 @@ RunMethod method_of(const RunControls& controls) {
 
 Tape::Tape(const Scenario& scenario, const RecordingInput& input)
     : scenario_(std::make_shared<const Scenario>(scenario)), strengths_(input.strengths) {
-  Simulation::Parts parts = parts_of(scenario);
+  Simulation::Parts parts = smooth_parts_of(scenario);
   unscaled_ = scale_strengths(parts, strengths_);
   method_ = method_of(parts.controls);
-  require_derivatives(*parts.model);
   if (parts.full_model) mirror_ = parts.full_model->mirror();
   measure_plan_ = std::make_shared<const MeasurePlan>(parts.measure_plan);
   Simulation simulation(std::move(parts));
   simulation.stop_when(input.stop_requested);
-  const std::uint64_t revision = simulation.solved_model().revision;
+  ChangesOfTissue changes;
+  simulation.listen(changes);
   whole_ = std::make_shared<const Model>(simulation.model());
   solved_ = mirror_.is_used() ? std::make_shared<const Model>(simulation.solved_model()) : whole_;
 
+  first_internals_ = simulation.state().internals;
   run_.states.push_back(TapedState::of(simulation.solved_state()));
   const auto run_to = [&](double time_s) {
     State before = simulation.solved_state();
     while (simulation.step(time_s)) {
-      require_same_model(simulation, revision);
+      if (changes.are_made)
+        throw NoGradient(
+            fmt::format("at t = {:g} s cells divide or exchange neighbours, through which there are no gradients yet; "
+                        "end the run before, or remove this from the scenario",
+                        simulation.time_s()));
       run_.rates.push_back(rates_of(before, simulation.solved_state()));
       run_.states.push_back(TapedState::of(simulation.solved_state()));
       before = simulation.solved_state();
@@ -91,6 +103,11 @@ Vectors Tape::positions(std::size_t state) const {
   return mirror_.is_used() ? mirror_.full_vectors(of_side) : of_side;
 }
 
+SmoothOutcome Tape::outcome(const std::string& name, std::size_t state) const {
+  const std::optional<Model> later = grown(*whole_, *whole_, first_internals_, run_.states.at(state).time_s);
+  return smooth_outcome(name, later ? *later : *whole_, *measure_plan_, positions(state));
+}
+
 std::size_t Tape::state_at(double time_s) const {
   for (std::size_t n = 0; n < run_.states.size(); ++n)
     if (is_same_instant(run_.states[n].time_s, time_s)) return n;
@@ -98,7 +115,7 @@ std::size_t Tape::state_at(double time_s) const {
 }
 
 std::unique_ptr<Model> Tape::solved_model(const Scenario& scenario) const {
-  Simulation::Parts parts = parts_of(scenario);
+  Simulation::Parts parts = smooth_parts_of(scenario);
   scale_strengths(parts, strengths_);
   return std::move(parts.model);
 }
@@ -141,8 +158,9 @@ Tape Tape::replayed(const Scenario& scenario, const StrengthFactors& strengths) 
   Tape other;
   other.scenario_ = std::make_shared<const Scenario>(scenario);
   other.strengths_ = strengths;
-  Simulation::Parts parts = parts_of(scenario);
+  Simulation::Parts parts = smooth_parts_of(scenario);
   other.unscaled_ = scale_strengths(parts, strengths);
+  other.first_internals_ = first_internals_;
   other.mirror_ = mirror_;
   other.measure_plan_ = measure_plan_;
   other.method_ = method_;

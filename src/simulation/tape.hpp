@@ -54,9 +54,7 @@ class Tape {
   [[nodiscard]] std::size_t state_at(double time_s) const;
 
   /// Return an output variable after a number of steps, and its gradient by positions (smooth_outcome).
-  [[nodiscard]] SmoothOutcome outcome(const std::string& name, std::size_t state) const {
-    return smooth_outcome(name, *whole_, *measure_plan_, positions(state));
-  }
+  [[nodiscard]] SmoothOutcome outcome(const std::string& name, std::size_t state) const;
 
   /// Return the key as a parameter, from the scenario with a larger and a smaller value of it. NoGradient as
   /// model_pair.
@@ -84,6 +82,7 @@ class Tape {
 
   std::shared_ptr<const Scenario> scenario_;
   std::shared_ptr<const Model> whole_, solved_;
+  std::vector<std::vector<double>> first_internals_;  // laws of the whole embryo
   std::shared_ptr<const MeasurePlan> measure_plan_;
   std::map<std::size_t, std::shared_ptr<const Law>> unscaled_;  // laws with other strengths than the scenario's
   Mirror mirror_;                                               // of the whole embryo to the solved side

@@ -166,6 +166,24 @@ double facet_area(const std::array<Vec3, 4>& points) {
   return u0.cross(v0).norm() + u1.cross(v0).norm() + u0.cross(v1).norm() + u1.cross(v1).norm();
 }
 
+// At Gauss points (s, t), with a = dx/ds and b = dx/dt, the area is the sum of |a x b|.
+std::array<Vec3, 4> facet_area_gradient(const std::array<Vec3, 4>& x) {
+  const double g = 1 / std::sqrt(3.0);
+  std::array<Vec3, 4> gradient = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (const double s : {-g, g})
+    for (const double t : {-g, g}) {
+      const Vec3 a = 0.25 * ((1 - t) * (x[1] - x[0]) + (1 + t) * (x[2] - x[3]));
+      const Vec3 b = 0.25 * ((1 - s) * (x[3] - x[0]) + (1 + s) * (x[2] - x[1]));
+      const Vec3 normal = a.cross(b).stableNormalized();
+      const Vec3 by_a = 0.25 * b.cross(normal), by_b = 0.25 * normal.cross(a);
+      gradient[0] -= (1 - t) * by_a + (1 - s) * by_b;
+      gradient[1] += (1 - t) * by_a - (1 + s) * by_b;
+      gradient[2] += (1 + t) * by_a + (1 + s) * by_b;
+      gradient[3] += (1 - s) * by_b - (1 + t) * by_a;
+    }
+  return gradient;
+}
+
 Vec3 facet_area_vector(const std::array<Vec3, 4>& points) {
   return 0.5 * (points[2] - points[0]).cross(points[3] - points[1]);
 }

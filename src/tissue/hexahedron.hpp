@@ -55,6 +55,9 @@ bool hex_is_upright(const HexPoints& points);
 /// Return the area of the bilinear facet through four points, um^2 (2 x 2 Gauss points).
 double facet_area(const std::array<Vec3, 4>& points);
 
+/// Return dA/dx_i of that area, um (four vectors).
+std::array<Vec3, 4> facet_area_gradient(const std::array<Vec3, 4>& points);
+
 /// Return the area vector of the facet (outward for counter-clockwise order), um^2; exact.
 Vec3 facet_area_vector(const std::array<Vec3, 4>& points);
 

@@ -7,7 +7,6 @@ namespace {
 TEST(SurfaceDrag, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 1);
   check_derivatives(SurfaceDrag(tissue, 0.14), tissue, 4);
-  check_law_derivatives(SurfaceDrag(tissue, 0.14), tissue, 4, {});
 }
 
 // 40 x 20 um above and below, moving at 2 um/s: force d A v. Corners in the middle carry two quarters.
@@ -79,7 +78,6 @@ TEST(Inertia, ForceIsMassTimesChangeOfVelocityOverTime) {
 TEST(FacePressure, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue = distorted_block(two_cells, 2, 4);
   check_derivatives(FacePressure(tissue, CellSide::apical, CellSet{true, false}, 0.5, {}), tissue, 4);
-  check_law_derivatives(FacePressure(tissue, CellSide::apical, CellSet{true, false}, 0.5, {}), tissue, 4, {});
 }
 
 TEST(FacePressure, PushesIntoTheCellsWithPressureTimesArea) {

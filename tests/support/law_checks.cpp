@@ -1,5 +1,6 @@
 #include "support/law_checks.hpp"
 
+#include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/derivatives.hpp"
 #include "mechanics/energy.hpp"
 
@@ -52,6 +53,15 @@ Work work_over(const Law& law, const Tissue& tissue, double size) {
   after.internals.front() = law.next_internal(step);
   const EnergyFlow flow = energy_flows(model, before, after).front();
   return {work, flow.active - flow.stored - flow.dissipated};
+}
+
+bool has_derivatives(const Law& law) {
+  try {
+    (void)law.derivatives();
+    return true;
+  } catch (const NoGradient&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -135,6 +145,7 @@ void check_derivatives(const Law& law, const Tissue& tissue, double size_um, int
     expect_assembled_is_matrix_free(law, motion, static_cast<unsigned>(100 + seed));
   }
   ::testing::Test::RecordProperty("random_motions", cases);
+  if (has_derivatives(law)) check_law_derivatives(law, tissue, size_um, law.first_internal(tissue), tolerance);
 }
 
 void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um, const std::vector<double>& internal,
@@ -157,7 +168,7 @@ void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um,
     // A change of everything: of positions by vectors, of numbers by numbers.
     const Vectors d_previous = random.vectors(nodes), d_earlier = random.vectors(nodes), d_end = random.vectors(nodes);
     std::vector<double> d_internal(internal.size());
-    for (double& d : d_internal) d = random.number(0.1);
+    for (std::size_t i = 0; i < internal.size(); ++i) d_internal[i] = internal[i] == -1 ? 0 : random.number(0.1);
     for (double& of : of_next) of = random.number();
     const auto changed = [&](double by, bool with_end) {
       Motion m = motion;
@@ -185,7 +196,10 @@ void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um,
                 tolerance * scale)
         << law.name() << ", seed " << seed;
     const BeginningGradient gradient = cleared();
-    derivatives.add_internal_gradient(motion.step(), law.next_internal(motion.step()), of_next, positions, gradient);
+    const std::vector<double> next_internal = law.next_internal(motion.step());
+    const std::vector<double> like = derivatives.next_internal_like(law, motion.step(), next_internal);
+    EXPECT_TRUE(like.empty() || like == next_internal) << law.name();
+    derivatives.add_internal_gradient(motion.step(), next_internal, of_next, positions, gradient);
     const auto next = [&](double by) {
       const Motion m = changed(by, true);
       const std::vector<double> numbers = law.next_internal(m.step());
@@ -195,7 +209,7 @@ void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um,
 
     const std::size_t cells = tissue.cells.size();
     const std::vector<double> ones(cells, 1.0);
-    if (!law.derivatives().with_strengths(ones)) continue;
+    if (!law.pattern() || law.pattern()->cells.empty() || !derivatives.with_strengths(ones)) continue;
     std::vector<double> of_cells(cells, 0.0);
     derivatives.add_strength_gradient(motion.step(), adjoint, of_cells);
     for (std::size_t c = 0; c < cells; ++c) {

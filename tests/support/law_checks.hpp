@@ -27,11 +27,12 @@ void expect_forces_are_minus_energy_gradient(const Law& law, Motion motion, doub
 void expect_tangent_is_minus_force_gradient(const Law& law, Motion motion, double tolerance);
 void expect_assembled_is_matrix_free(const Law& law, const Motion& motion, unsigned seed);
 
-/// All of them, at random large deformations and rotations; `size_um` is how far nodes move.
+/// All of them, at random large deformations and rotations; `size_um` is how far nodes move. Of a law that does not
+/// refuse gradients, check_law_derivatives too.
 void check_derivatives(const Law& law, const Tissue& tissue, double size_um, int cases = 3, double tolerance = 1e-6);
 
 /// Derivatives of forces and of the internal state by what a step begins with, and by strengths of cells if it has any,
-/// at random large motions of second order; `internal`: the state at its beginning.
+/// at random large motions of second order; `internal`: the state at its beginning, whose numbers -1 are marks.
 void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um, const std::vector<double>& internal,
                            double tolerance = 1e-7);
 

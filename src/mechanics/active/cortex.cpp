@@ -128,6 +128,10 @@ double Cortex::stiffening_of(std::size_t f, const Step& step) const {
   return of_face(f, [&](CellId cell) { return stiffening(cell, step); });
 }
 
+double Cortex::activity_of_face(std::size_t f, const Step& step) const {
+  return of_face(f, [&](CellId cell) { return activity(cell, step.end_time_s, step.internal); });
+}
+
 // Compute the factors of faces before `active` reads them.
 void Cortex::take_factors(const Step& step) const {
   const auto& [direction, noise] = rule_.walls;
@@ -143,7 +147,7 @@ void Cortex::take_factors(const Step& step) const {
 }
 
 Cortex::Response Cortex::active(std::size_t f, double area, const Step& step, bool with_energy) const {
-  const double acting = of_face(f, [&](CellId cell) { return activity(cell, step.end_time_s, step.internal); });
+  const double acting = activity_of_face(f, step);
   const double factor = rule_.walls.is_used() ? factors_.of_face[f] : 1;
   const double gamma = factor * acting * rule_.tension, saturation = rule_.saturation * rest_areas_[f];
   if (saturation <= 0) return {gamma * area, gamma, 0};
@@ -294,8 +298,7 @@ std::vector<double> Cortex::next_internal(const Step& step) const {
       internal[f] = (rest_area_before(f, step) + r * internal[f]) / ((1 + r) * rest_areas_[f]);
     internal = joined(std::move(internal), before.areas);
   }
-  if (activation_.is_used())
-    internal = joined(std::move(internal), activation_.internal(step.positions, step.end_time_s, before.activation));
+  if (activation_.is_used()) internal = joined(std::move(internal), activation_.after(step, before.activation));
   return joined(std::move(internal), before.given.internal());
 }
 

@@ -80,15 +80,21 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
                                                  double time_s) const override;
 
-  /// NoGradient where cells start by their shape.
+  /// NoGradient where signals start cells, or forces jump where a cell starts.
   [[nodiscard]] const LawDerivatives& derivatives() const override;
   void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
                           const BeginningGradient& gradient) const override;
   void add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
                              std::span<Vec3> positions, const BeginningGradient& gradient) const override;
+  [[nodiscard]] std::vector<double> next_internal_like(const Law& law, const Step& step,
+                                                       std::span<const double> next) const override;
+  void move_to_signals(std::span<double> by_internal, std::span<const CellArray> signals,
+                       std::span<CellArray> by_signals) const override;
   void add_strength_gradient(const Step& step, std::span<const Vec3> adjoint,
                              std::span<double> of_cells) const override;
   [[nodiscard]] std::unique_ptr<Law> with_strengths(std::span<const double> factors) const override;
+  /// Return the law whose cells start at the interpolated crossing of their threshold.
+  [[nodiscard]] std::unique_ptr<Law> smooth() const override;
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
@@ -109,6 +115,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] Response elastic(std::size_t face, double area, const Step& step, double b, bool with_energy) const;
   [[nodiscard]] Response crowded(std::size_t face, double area, bool with_energy) const;
   [[nodiscard]] double stiffening_of(std::size_t face, const Step& step) const;
+  [[nodiscard]] double activity_of_face(std::size_t face, const Step& step) const;
   void take_factors(const Step& step) const;
   struct FaceTensions {                    // all faces at the end of a step
     std::vector<double> tensions, slopes;  // faces, filled up to whole batches
@@ -120,6 +127,19 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   };
   [[nodiscard]] FaceTensions face_tensions(const Step& step) const;
   [[nodiscard]] FaceArrays kernel_arrays(const Step& step) const;
+  // Parts of add_force_gradient; `increases`: of the areas along the adjoint.
+  struct Along {
+    const Step& step;
+    std::vector<double> areas, increases;  // faces
+  };
+  void add_flow_gradient(const Along& along, const BeginningGradient& gradient) const;
+  void add_activation_gradient(const Along& along, std::span<double> of_states) const;
+  void add_direction_gradient(const Along& along, std::span<Vec3> previous) const;
+  /// Return the active tension of a face at activity 1 of a cell of strength 1.
+  [[nodiscard]] double unit_tension(std::size_t face, double area) const;
+  /// Return the part of an internal state, or of its gradient, that ShapeActivation has.
+  template <class Number>
+  [[nodiscard]] std::span<Number> activation_of(std::span<Number> internal) const;
   /// Return the increase of the area of each face along a direction of nodes.
   [[nodiscard]] std::vector<double> area_increases(std::span<const Vec3> positions,
                                                    std::span<const Vec3> direction) const;
@@ -138,6 +158,12 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] Memory memory(std::span<const double> internal) const;
   [[nodiscard]] double activity(CellId cell, double time_s, std::span<const double> internal) const;
   [[nodiscard]] double stiffening(CellId cell, const Step& step) const;
+  // Derivatives of both by the state of the cell in ShapeActivation.
+  [[nodiscard]] double activity_slope(CellId cell, const Step& step) const;
+  [[nodiscard]] double stiffening_slope(CellId cell, const Step& step) const;
+  // Call body(cell, weight of its parameters in the face, strength included) for the cells of a face.
+  template <class Body>
+  void for_cells(const Face& face, const Body& body) const;
   template <class OfCell>
   [[nodiscard]] double of_face(std::size_t face, const OfCell& of_cell) const;
 

@@ -8,11 +8,57 @@
 namespace plica {
 
 const LawDerivatives& Cortex::derivatives() const {
-  if (activation_.is_used())
-    refuse_gradient("shape-dependent activity has no derivatives yet; remove its trigger or follow");
-  if (rule_.walls.is_used())
-    refuse_gradient("direction and noise of lateral faces have no derivatives yet; remove them");
+  if (rule_.activation.signal && activation_.starts())
+    refuse_gradient("a trigger by a signal has no derivative yet; use follow");
+  const bool jumps = (rule_.tension != 0 && rule_.program.at(0) != 0) || !rule_.program.jumps_s().empty() ||
+                     !rule_.stiffness_program.jumps_s().empty();
+  if (activation_.starts() && jumps)
+    refuse_gradient("a jump at a time given by a trigger has no derivative; begin its program at 0, without jumps");
   return *this;
+}
+
+std::unique_ptr<Law> Cortex::smooth() const {
+  if (!activation_.starts()) return {};
+  auto law = std::make_unique<Cortex>(*this);
+  law->rule_.activation.at_crossing = true;
+  law->activation_.start_at_crossing();
+  return law;
+}
+
+template <class Number>
+std::span<Number> Cortex::activation_of(std::span<Number> internal) const {
+  return internal.subspan(flows() ? 2 * faces_.size() : 0, activation_.is_used() ? pattern_.cells.size() : 0);
+}
+
+double Cortex::activity_slope(CellId cell, const Step& step) const {
+  const Memory remembered = memory(step.internal);
+  if (remembered.given.of(cell)) return 0;
+  const double state = remembered.activation[cell.index()], time_s = step.end_time_s;
+  const double factor = pattern_.remaining(cell, time_s) * pattern_.pulse(cell, time_s);
+  if (!activation_.starts()) return factor * rule_.program.delayed_at(pattern_.delays_s[cell.index()], time_s);
+  return state == ShapeActivation::not_yet ? 0 : -factor * rule_.program.slope_at(time_s - state);
+}
+
+double Cortex::stiffening_slope(CellId cell, const Step& step) const {
+  const double start_s = memory(step.internal).activation[cell.index()];
+  if (!activation_.starts() || start_s == ShapeActivation::not_yet) return 0;
+  return -pattern_.remaining(cell, step.end_time_s) * rule_.stiffness_program.slope_at(step.end_time_s - start_s);
+}
+
+template <class Body>
+void Cortex::for_cells(const Face& face, const Body& body) const {
+  const double share = face.share * (face.beyond ? 0.5 : 1);
+  const auto add = [&](CellId cell) {
+    const double strength = pattern_.strengths[cell.index()];
+    if (strength != 0) body(cell, share * strength);
+  };
+  add(face.cell);
+  if (face.beyond) add(*face.beyond);
+}
+
+double Cortex::unit_tension(std::size_t f, double area) const {
+  const double factor = rule_.walls.is_used() ? factors_.of_face[f] : 1;
+  return factor * rule_.tension * area / (area + rule_.saturation * rest_areas_[f]);
 }
 
 // A central difference over 1e-3 um: its errors, of third derivatives and of rounding, are below 1e-9 for faces of
@@ -33,23 +79,78 @@ std::vector<double> Cortex::area_increases(std::span<const Vec3> positions, std:
   return increases;
 }
 
-// With r = rate/tau and A_b the extrapolated rest area, T = k b (A - A_b)/(A_b + r A).
 void Cortex::add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
                                 const BeginningGradient& gradient) const {
-  if (!flows() || rule_.stiffness == 0) return;
-  const std::vector<double> now = areas(step.positions), increases = area_increases(step.positions, adjoint);
+  const bool is_elastic = flows() && rule_.stiffness != 0, has_direction = rule_.walls.direction && rule_.tension != 0;
+  if (!is_elastic && !activation_.is_used() && !has_direction) return;
+  take_factors(step);
+  const Along along{step, areas(step.positions), area_increases(step.positions, adjoint)};
+  if (is_elastic) add_flow_gradient(along, gradient);
+  if (activation_.is_used()) add_activation_gradient(along, activation_of(gradient.internal));
+  if (has_direction) add_direction_gradient(along, gradient.previous);
+}
+
+// With r = rate/tau and A_b the extrapolated rest area, T = k b (A - A_b)/(A_b + r A).
+void Cortex::add_flow_gradient(const Along& along, const BeginningGradient& gradient) const {
+  const Step& step = along.step;
   const double r = step.rate_s / rule_.relaxation_s;
   for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const double A = now[f], A_b = rest_area_before(f, step), yielding = A_b + r * A;
+    const double A = along.areas[f], A_b = rest_area_before(f, step), yielding = A_b + r * A;
     const double k = rule_.stiffness * stiffening_of(f, step) * (A < A_b ? rule_.compression_ratio : 1);
-    const double of_before = k * (1 + r) * A / (yielding * yielding) * increases[f] * rest_areas_[f];
+    const double of_before = k * (1 + r) * A / (yielding * yielding) * along.increases[f] * rest_areas_[f];
     gradient.internal[f] += (1 + step.ahead) * of_before;
     gradient.internal[faces_.size() + f] -= step.ahead * of_before;
   }
 }
 
-void Cortex::add_internal_gradient(const Step& step, std::span<const double> /*next*/, std::span<const double> adjoint,
+void Cortex::add_activation_gradient(const Along& along, std::span<double> of_states) const {
+  const auto& [step, areas, increases] = along;
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const double active = unit_tension(f, areas[f]);
+    const double elastic = rule_.stiffness == 0 ? 0 : this->elastic(f, areas[f], step, 1, false).tension;
+    for_cells(faces_[f], [&](CellId cell, double weight) {
+      double by_state = active == 0 ? 0 : active * activity_slope(cell, step);
+      if (elastic != 0) by_state += elastic * stiffening_slope(cell, step);
+      of_states[cell.index()] -= weight * by_state * increases[f];
+    });
+  }
+}
+
+void Cortex::add_direction_gradient(const Along& along, std::span<Vec3> previous) const {
+  const auto& [direction, noise] = rule_.walls;
+  const auto& [step, areas, increases] = along;
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const double acting = activity_of_face(f, step);
+    const double by_noise = noise.spread > 0 ? noise_factor(noise, pairs_[f], step.end_time_s) : 1;
+    const double by_direction =
+        -by_noise * acting * rule_.tension * areas[f] / (areas[f] + rule_.saturation * rest_areas_[f]) * increases[f];
+    const auto by_corner = direction_gradient(*direction, gather(step.previous_positions, faces_[f].nodes));
+    for (int i = 0; i < 4; ++i) previous[faces_[f].nodes[i].index()] += by_direction * by_corner[i];
+  }
+}
+
+std::vector<double> Cortex::next_internal_like(const Law& /*law*/, const Step& step,
+                                               std::span<const double> next) const {
+  std::vector<double> own = next_internal(step);
+  if (activation_.is_used())
+    std::ranges::copy(activation_.after_like(step, activation_of(step.internal), activation_of(next)),
+                      activation_of(std::span(own)).begin());
+  return own;
+}
+
+void Cortex::move_to_signals(std::span<double> by_internal, std::span<const CellArray> signals,
+                             std::span<CellArray> by_signals) const {
+  activation_.move_to_signals(activation_of(by_internal), signals, by_signals);
+}
+
+void Cortex::add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
                                    std::span<Vec3> positions, const BeginningGradient& gradient) const {
+  if (activation_.is_used()) {
+    Step seen = step;
+    seen.internal = activation_of(step.internal);
+    activation_.add_gradient(seen, activation_of(next), activation_of(adjoint), positions,
+                             {gradient.ahead, gradient.previous, gradient.earlier, activation_of(gradient.internal)});
+  }
   if (!flows()) return;
   const double r = step.rate_s / rule_.relaxation_s;
   // Forces of face tensions -w add sum w dA/dx.
@@ -67,22 +168,17 @@ void Cortex::add_internal_gradient(const Step& step, std::span<const double> /*n
 }
 
 void Cortex::add_strength_gradient(const Step& step, std::span<const Vec3> adjoint, std::span<double> of_cells) const {
+  take_factors(step);
   const std::vector<double> now = areas(step.positions), increases = area_increases(step.positions, adjoint);
   for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const Face& face = faces_[f];
-    const double A = now[f], saturation = rule_.saturation * rest_areas_[f], ratio = rest_areas_[f] / A;
-    const double active = rule_.tension * A / (A + saturation), crowded = -rule_.crowding * ratio * ratio;
+    const double A = now[f], ratio = rest_areas_[f] / A, active = unit_tension(f, A);
     const double elastic = rule_.stiffness == 0 ? 0 : this->elastic(f, A, step, 1, false).tension;
-    const auto add = [&](CellId cell) {
-      const double strength = pattern_.strengths[cell.index()];
-      if (strength == 0) return;
-      double tension = crowded;
+    for_cells(faces_[f], [&](CellId cell, double weight) {
+      double tension = -rule_.crowding * ratio * ratio;
       if (active != 0) tension += active * activity(cell, step.end_time_s, step.internal);
       if (elastic != 0) tension += elastic * stiffening(cell, step);
-      of_cells[cell.index()] -= face.share * (face.beyond ? 0.5 : 1) * strength * tension * increases[f];
-    };
-    add(face.cell);
-    if (face.beyond) add(*face.beyond);
+      of_cells[cell.index()] -= weight * tension * increases[f];
+    });
   }
 }
 

@@ -37,6 +37,13 @@ double Program::at(double time_s) const {
   return activities_[i - 1] + part * (activities_[i] - activities_[i - 1]);
 }
 
+double Program::slope_at(double time_s) const {
+  const auto next = std::ranges::upper_bound(times_, time_s);
+  if (next == times_.begin() || next == times_.end()) return 0;
+  const std::size_t i = next - times_.begin();
+  return (activities_[i] - activities_[i - 1]) / (times_[i] - times_[i - 1]);
+}
+
 double Program::integral(double from_s, double to_s) const {
   if (times_.empty()) return to_s - from_s;
   const auto from_first_point = [&](double time_s) {

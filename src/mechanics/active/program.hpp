@@ -14,6 +14,8 @@ class Program {
       : times_(std::move(times_s)), activities_(std::move(activities)) {}
 
   [[nodiscard]] double at(double time_s) const;
+  /// Return the slope of the activity, 1/s; between points.
+  [[nodiscard]] double slope_at(double time_s) const;
   /// Return the activity with a delay of `delay_s`; 0 before time 0 of the program.
   [[nodiscard]] double delayed_at(double delay_s, double time_s) const;
   /// Return the integral of the activity over a time, s.

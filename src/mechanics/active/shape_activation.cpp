@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mechanics/law.hpp"
+
 namespace plica {
 namespace {
 
@@ -59,12 +61,17 @@ std::vector<double> ShapeActivation::sizes(std::span<const Vec3> x) const {
     for (const auto& [base, apex] : edges_[c])
       sizes[c] += (x[apex.index()] - x[base.index()]).norm() / static_cast<double>(edges_[c].size());
   for (std::size_t c = 0; c < apices_.size(); ++c) {
-    Eigen::Matrix<double, 3, 2> stretch = Eigen::Matrix<double, 3, 2>::Zero();
-    for (std::size_t i = 0; i < apices_[c].size(); ++i) stretch += x[apices_[c][i].index()] * gradients_[c][i];
+    const Eigen::Matrix<double, 3, 2> stretch = apical_stretch(c, x);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> squares(stretch.transpose() * stretch, Eigen::EigenvaluesOnly);
     sizes[c] = std::sqrt(squares.eigenvalues()[1]);
   }
   return sizes;
+}
+
+Eigen::Matrix<double, 3, 2> ShapeActivation::apical_stretch(std::size_t c, std::span<const Vec3> x) const {
+  Eigen::Matrix<double, 3, 2> stretch = Eigen::Matrix<double, 3, 2>::Zero();
+  for (std::size_t i = 0; i < apices_[c].size(); ++i) stretch += x[apices_[c][i].index()] * gradients_[c][i];
+  return stretch;
 }
 
 std::vector<double> ShapeActivation::ratios(std::span<const Vec3> positions) const {
@@ -81,6 +88,11 @@ std::vector<double> ShapeActivation::internal(std::span<const Vec3> positions, d
   return {before.begin(), before.end()};
 }
 
+std::vector<double> ShapeActivation::after(const Step& step, std::span<const double> before) const {
+  std::vector<double> state = internal(step.positions, step.end_time_s, before);
+  return rule_.at_crossing ? after_like(step, before, state) : state;
+}
+
 std::vector<double> ShapeActivation::of_signals(std::span<const CellArray> signals, double time_s,
                                                 std::span<const double> before) const {
   if (!rule_.signal) return {before.begin(), before.end()};
@@ -92,7 +104,7 @@ std::vector<double> ShapeActivation::next(std::vector<double> values, double tim
   for (std::size_t c = 0; c < values.size(); ++c) {
     const double ratio = values[c];
     if (!starts()) {
-      values[c] = std::clamp((ratio - rule_.from) / (rule_.to - rule_.from), 0.0, 1.0);
+      values[c] = std::clamp(progress(ratio), 0.0, 1.0);
     } else if (!before.empty() && before[c] != not_yet) {
       values[c] = before[c];
     } else {

@@ -12,6 +12,9 @@
 
 namespace plica {
 
+struct BeginningGradient;
+struct Step;
+
 /// Quantity of a cell relative to its reference value. The stretch is that of its apical surface along the direction of
 /// largest stretch.
 enum class ShapeMeasure { apical_area_ratio, basal_area_ratio, height_ratio, apical_stretch };
@@ -28,6 +31,9 @@ struct ShapeActivationRule {
   double threshold = 1;                    // for both triggers
   double from = 1, to = 0;                 // follow: activity 0 up to `from`, 1 beyond `to`, linear between
   std::optional<std::size_t> signal = {};  // place among the model's signals, which replaces the measure
+  // Triggers: start at the crossing of the threshold, interpolated linearly within the step, not at the end of the
+  // step.
+  bool at_crossing = false;
 };
 
 /// State, one number per cell: start time (s) or `not_yet` for cells with a trigger, or progress from 0 to 1 for cells
@@ -39,6 +45,8 @@ class ShapeActivation {
   ShapeActivation(const Tissue& tissue, const ShapeActivationRule& rule);
 
   [[nodiscard]] bool is_used() const { return rule_.kind != ShapeActivationRule::Kind::none; }
+  /// Use the rule at_crossing.
+  void start_at_crossing() { rule_.at_crossing = true; }
   [[nodiscard]] bool starts() const { return is_used() && rule_.kind != ShapeActivationRule::Kind::follows; }
 
   /// Return the state at given positions and time from the previous state (empty before the first step).
@@ -48,10 +56,27 @@ class ShapeActivation {
   [[nodiscard]] std::vector<double> of_signals(std::span<const CellArray> signals, double time_s,
                                                std::span<const double> before) const;
 
+  /// Return the state at the end of a step.
+  [[nodiscard]] std::vector<double> after(const Step& step, std::span<const double> before) const;
+  /// Return it for the cells that start in this step in `next`, another state at its end, of a rule at_crossing.
+  [[nodiscard]] std::vector<double> after_like(const Step& step, std::span<const double> before,
+                                               std::span<const double> next) const;
+  /// Add the gradient of adjoint . after_like by positions at the end of the step and by what it begins with.
+  void add_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
+                    std::span<Vec3> positions, const BeginningGradient& gradient) const;
+  /// Move the gradient by states of cells that follow a signal to that by the signal; others stay.
+  void move_to_signals(std::span<double> by_state, std::span<const CellArray> signals,
+                       std::span<CellArray> by_signals) const;
+
   /// Return the quantity of each cell.
   [[nodiscard]] std::vector<double> ratios(std::span<const Vec3> positions) const;
+  /// Add the gradient of sum weights . ratios; cells.
+  void add_ratio_gradient(std::span<const Vec3> positions, std::span<const double> weights,
+                          std::span<Vec3> gradient) const;
 
  private:
+  [[nodiscard]] double progress(double ratio) const { return (ratio - rule_.from) / (rule_.to - rule_.from); }
+  [[nodiscard]] Eigen::Matrix<double, 3, 2> apical_stretch(std::size_t cell, std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<double> next(std::vector<double> values, double time_s,
                                          std::span<const double> before) const;
   [[nodiscard]] std::vector<double> sizes(std::span<const Vec3> positions) const;

@@ -7,14 +7,44 @@
 
 namespace plica {
 
+namespace {
+
+constexpr double least_in_surface = 1e-6;  // squared length of an axis of length 1
+
+}  // namespace
+
 double direction_factor(const WallDirection& direction, const std::array<Vec3, 4>& face) {
   const Vec3 normal = facet_area_vector(face).normalized();
   const Vec3 up = (face[2] + face[3] - face[0] - face[1]).normalized();  // from base to apex
   const Vec3 axis = direction.across ? Vec3::UnitY() : Vec3::UnitX();
   const Vec3 in_surface = axis - axis.dot(up) * up;
   const double squared = in_surface.squaredNorm();
-  const double cosine = squared > 1e-6 ? normal.dot(in_surface) * normal.dot(in_surface) / squared : 0.5;
+  const double cosine = squared > least_in_surface ? normal.dot(in_surface) * normal.dot(in_surface) / squared : 0.5;
   return direction.weakest + (direction.strongest - direction.weakest) * cosine;
+}
+
+// With the axis e, the area vector N and U from base to apex, p = e - (e.U) U/|U|^2 is the axis in the surface, and
+// cos^2 a = (N.p)^2/(|N|^2 |p|^2).
+std::array<Vec3, 4> direction_gradient(const WallDirection& direction, const std::array<Vec3, 4>& face) {
+  const Vec3 one = face[2] - face[0], other = face[3] - face[1], N = facet_area_vector(face);
+  const Vec3 U = face[2] + face[3] - face[0] - face[1], e = direction.across ? Vec3::UnitY() : Vec3::UnitX();
+  const double m = e.dot(U) / U.squaredNorm();
+  const Vec3 p = e - m * U;
+  const double squared = p.squaredNorm(), part = N.dot(p), size = N.squaredNorm();
+  std::array<Vec3, 4> gradient = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  if (squared <= least_in_surface) return gradient;
+  const double cosine = part * part / (size * squared), range = direction.strongest - direction.weakest;
+  const Vec3 by_N = 2 * range * (part / (size * squared) * p - cosine / size * N);
+  // d(N.p) = -m N.dU - N.U dm and d|p|^2 = -2 m p.dU - 2 U.p dm, where U.p = 0, and dm = (p - m U).dU/|U|^2.
+  const Vec3 by_U =
+      2 * range *
+      (part / (size * squared) * (-m * N - N.dot(U) / U.squaredNorm() * (p - m * U)) + cosine / squared * m * p);
+  const Vec3 by_one = 0.5 * other.cross(by_N), by_other = 0.5 * by_N.cross(one);
+  gradient[0] = -by_one - by_U;
+  gradient[1] = -by_other - by_U;
+  gradient[2] = by_one + by_U;
+  gradient[3] = by_other + by_U;
+  return gradient;
 }
 
 double noise_factor(const WallNoise& noise, std::uint64_t pair, double time_s) {

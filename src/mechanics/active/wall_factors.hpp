@@ -35,6 +35,9 @@ struct WallFactorRule {
 /// degrees.
 double direction_factor(const WallDirection& direction, const std::array<Vec3, 4>& face);
 
+/// Return its derivatives by the four corners, 1/um.
+std::array<Vec3, 4> direction_gradient(const WallDirection& direction, const std::array<Vec3, 4>& face);
+
 /// Return the noise factor of a pair of cells, by any number that both share. A function of rule, pair and time only,
 /// so that it needs no memory: it is linear between times a 32nd of the correlation time apart.
 double noise_factor(const WallNoise& noise, std::uint64_t pair, double time_s);

@@ -81,7 +81,10 @@ class SelfContact final : public Law, public LawDerivatives {
                           const BeginningGradient& gradient) const override;
   void add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
                              std::span<Vec3> positions, const BeginningGradient& gradient) const override;
-  [[nodiscard]] bool internal_has_parameters() const override { return false; }
+  [[nodiscard]] std::vector<double> next_internal_like(const Law& /*law*/, const Step& /*step*/,
+                                                       std::span<const double> /*next*/) const override {
+    return {};
+  }
 
   using Pair = ContactPair;
   /// Contact point: a node, an edge midpoint or a facet mean.

@@ -10,6 +10,7 @@
 // derivative of R: R K R^T, the warped stiffness.
 #pragma once
 
+#include "mechanics/derivatives.hpp"
 #include "mechanics/elasticity/element_values.hpp"
 #include "mechanics/elasticity/hexahedron_stiffness.hpp"
 #include "mechanics/kernels/batch_law.hpp"
@@ -17,7 +18,7 @@
 
 namespace plica {
 
-class Corotational final : public BatchLaw<Corotational, 8> {
+class Corotational final : public BatchLaw<Corotational, 8>, public LawDerivatives {
  public:
   /// Make the law; `moduli` per element, `shear_viscosity` in nN s/um^2 (0: none), rest shapes of the elements of the
   /// tissue. Throws std::domain_error if a rest shape is inverted.
@@ -31,10 +32,10 @@ class Corotational final : public BatchLaw<Corotational, 8> {
                                                     std::span<const Vec3> positions) const override;
 
   [[nodiscard]] bool overbends() const override { return true; }
-  [[nodiscard]] const LawDerivatives& derivatives() const override {
-    if (shear_viscosity_ > 0)
-      refuse_gradient("viscosity has no derivatives yet; set dynamics.shear_viscosity_Pa_s = 0");
-    return static_derivatives();
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
+  void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                          const BeginningGradient& gradient) const override {
+    if (shear_viscosity_ > 0) add_viscous_gradient(*this, step, adjoint, gradient);
   }
 
   [[nodiscard]] CorotationalArrays kernel_arrays(const Step& step) const;

@@ -20,15 +20,20 @@ static_assert(sizeof(FlowedBatch) == numbers_a_batch * sizeof(double));
 
 Vec3 gauss_point(int g) { return hex_reference_nodes[static_cast<std::size_t>(g)] / std::sqrt(3.0); }
 
-// dx/d(reference) at a Gauss point: hex_jacobian there.
-Mat3 gauss_jacobian(const HexPoints& points, int g) {
+// Gradients of the shape functions at a Gauss point.
+const std::array<Vec3, 8>& gauss_gradients(int g) {
   static const std::array<std::array<Vec3, 8>, 8> gradients = [] {
     std::array<std::array<Vec3, 8>, 8> of_point;
     for (int point = 0; point < 8; ++point) of_point[point] = hex_shape_gradients(gauss_point(point));
     return of_point;
   }();
+  return gradients[g];
+}
+
+// dx/d(reference) at a Gauss point: hex_jacobian there.
+Mat3 gauss_jacobian(const HexPoints& points, int g) {
   Mat3 jacobian = Mat3::Zero();
-  for (int i = 0; i < 8; ++i) jacobian += points[i] * gradients[g][i].transpose();
+  for (int i = 0; i < 8; ++i) jacobian += points[i] * gauss_gradients(g)[i].transpose();
   return jacobian;
 }
 
@@ -53,6 +58,19 @@ Mat3 symmetric_at(const double* first) {
   Mat3 result;
   result << at(0), at(3), at(5), at(3), at(1), at(4), at(5), at(4), at(2);
   return result;
+}
+
+// Gradients of a function by the six numbers of a symmetric matrix, from its symmetric gradient G by the matrix, so
+// that it changes by tr(G dM); and the reverse.
+void add_by_numbers(const Mat3& G, double factor, double* first) {
+  const double values[6] = {G(0, 0), G(1, 1), G(2, 2), 2 * G(0, 1), 2 * G(1, 2), 2 * G(2, 0)};
+  for (std::size_t k = 0; k < 6; ++k) first[k * lanes] += factor * values[k];
+}
+
+Mat3 by_matrix(const double* first) {
+  Mat3 G = 0.5 * symmetric_at(first);
+  G.diagonal() *= 2;
+  return G;
 }
 
 Mat3 deformation_gradient(const HexPoints& points, const HexPoints& rest, int g) {
@@ -162,6 +180,59 @@ std::vector<double> NeoHookean::next_internal(const Step& step) const {
     kernels().write_flowed(at, first, last, batches_of(internal).data());
   });
   return internal;
+}
+
+NeoHookean::FlowingPoint NeoHookean::flowing_point(std::size_t place, int g, const Step& step) const {
+  const std::size_t e = std::min(place, elements_.size() - 1);
+  const Mat3 to_rest = gauss_jacobian(rest_[e], g).inverse();
+  const Mat3 F = gauss_jacobian(gather(step.positions, elements_[e]), g) * to_rest;
+  const double r = step.rate_s * flow_batches_[place / batch_size].rates[place % batch_size];
+  return {F, to_rest, flowed_before(place, g, step) + r * F.transpose() * F, r};
+}
+
+void NeoHookean::add_by_flowed(const Mat3& by_flowed, std::size_t place, int g,
+                               const BeginningGradient& gradient) const {
+  const std::span<FlowedBatch> now = batches_of(gradient.internal), earlier = now.subspan(batches_.size());
+  add_by_numbers(by_flowed, 1 + gradient.ahead, first_of(now, place, g));
+  add_by_numbers(by_flowed, -gradient.ahead, first_of(earlier, place, g));
+}
+
+// With S = C_b + r C and d = det(S)^(1/3), adjoint . forces has the term -w/2 tr(dC d S^-1), dC along the adjoint.
+void NeoHookean::add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                                    const BeginningGradient& gradient) const {
+  if (!flows_) return;
+  chunks_.for_elements([&](std::size_t e) {
+    const HexPoints along = gather(adjoint, elements_[e]);
+    for (int g = 0; g < 8; ++g) {
+      const auto [F, to_rest, S, r] = flowing_point(e, g, step);
+      const Mat3 half = F.transpose() * gauss_jacobian(along, g) * to_rest, dC = half + half.transpose();
+      const Mat3 inverse = S.inverse(), turned = inverse * dC * inverse;
+      const double factor = -0.5 * batches_[e / batch_size].weights[g][e % batch_size] * std::cbrt(S.determinant());
+      add_by_flowed(factor * ((inverse * dC).trace() / 3 * inverse - turned), e, g, gradient);
+    }
+  });
+}
+
+// Changes of S/d along Z are tr(Q dS), Q = (Z - tr(Z S)/3 S^-1)/d; dS = dC_b + r dC.
+void NeoHookean::add_internal_gradient(const Step& step, std::span<const double> /*next*/,
+                                       std::span<const double> adjoint, std::span<Vec3> positions,
+                                       const BeginningGradient& gradient) const {
+  if (!flows_) return;
+  const auto [of_now, of_earlier] = memory(adjoint);
+  const auto add = [&](std::size_t place) {
+    const std::array<NodeId, 8>& nodes = elements_[std::min(place, elements_.size() - 1)];
+    for (int g = 0; g < 8; ++g) {
+      const auto [F, to_rest, S, r] = flowing_point(place, g, step);
+      const Mat3 Z = by_matrix(first_of(of_now, place, g));
+      const Mat3 Q = (Z - (Z * S).trace() / 3 * S.inverse()) / std::cbrt(S.determinant());
+      add_by_flowed(Q, place, g, gradient);
+      add_by_numbers(by_matrix(first_of(of_earlier, place, g)), 1, first_of(batches_of(gradient.internal), place, g));
+      const Mat3 by_jacobian = 2 * r * F * Q * to_rest.transpose();
+      for (int i = 0; i < 8; ++i) positions[nodes[i].index()] += by_jacobian * gauss_gradients(g)[i];
+    }
+  };
+  chunks_.for_elements(add);
+  for (std::size_t place = elements_.size(); place < places(); ++place) add(place);
 }
 
 std::unique_ptr<Law> NeoHookean::after_division(const Tissue& tissue, const TissueChange& change,

@@ -7,6 +7,7 @@
 // The bulk modulus of this energy is 2 mu/3; the rest of volume elasticity belongs to cell_volume.
 #pragma once
 
+#include "mechanics/derivatives.hpp"
 #include "mechanics/elasticity/element_values.hpp"
 #include "mechanics/kernels/batch_law.hpp"
 #include "tissue/tissue.hpp"
@@ -20,7 +21,7 @@ struct NeoHookeanMaterial {
 
 /// Neo-Hookean law. Its semidefinite tangent keeps the relaxed rest shape fixed, and is stiffened along rotations of
 /// Gauss points under pressure, just enough to prevent negative stiffness.
-class NeoHookean final : public BatchLaw<NeoHookean, 8> {
+class NeoHookean final : public BatchLaw<NeoHookean, 8>, public LawDerivatives {
  public:
   /// Make the law; `materials` per element, rest shapes of the elements of the tissue. Throws std::domain_error if one
   /// is inverted.
@@ -30,10 +31,11 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8> {
   [[nodiscard]] double energy(const Step& step) const override;
   [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
 
-  [[nodiscard]] const LawDerivatives& derivatives() const override {
-    if (flows_) refuse_gradient("relaxing rest shapes have no derivatives yet; remove elasticity.relaxation_min");
-    return static_derivatives();
-  }
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
+  void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                          const BeginningGradient& gradient) const override;
+  void add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
+                             std::span<Vec3> positions, const BeginningGradient& gradient) const override;
 
   /// Return, if cells relax, C_p at the beginning of this step, then of the previous step, in the layout of kernels.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
@@ -65,6 +67,16 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8> {
   [[nodiscard]] Memory memory(std::span<const double> internal) const;
   [[nodiscard]] Mat3 flowed_before(std::size_t element, int gauss_point, const Step& step) const;
   [[nodiscard]] NeoHookeanArrays kernel_arrays(const Step& step) const;
+  // A Gauss point at the end of a step: F, the inverse of dx/d(reference) at rest, C_b + r C and r. `place`: the
+  // element, or a repetition of the last.
+  struct FlowingPoint {
+    Mat3 F, to_rest, sum;
+    double r;
+  };
+  [[nodiscard]] FlowingPoint flowing_point(std::size_t place, int gauss_point, const Step& step) const;
+  // Add the gradient by C_b to that by an internal state.
+  void add_by_flowed(const Mat3& by_flowed, std::size_t place, int gauss_point,
+                     const BeginningGradient& gradient) const;
 
   ElementValues<NeoHookeanMaterial> materials_;
   bool flows_;  // whether any element relaxes

@@ -5,6 +5,7 @@
 // fits best (least sum |d_i|^2): spring forces then have no torque and derive from sum k l^2 / 2.
 #pragma once
 
+#include "mechanics/derivatives.hpp"
 #include "mechanics/elasticity/turning_elements.hpp"
 
 namespace plica {
@@ -29,7 +30,7 @@ struct AttractorModuli {
 /// uniaxial modulus along a is 2 k a / (b c), the shear modulus in the plane of a and b is 2 k a b / (c (a^2 + b^2)).
 AttractorModuli attractor_moduli(const HexPoints& rest, double stiffness);
 
-class ShapeMemory final : public TurningElements {
+class ShapeMemory final : public TurningElements, public LawDerivatives {
  public:
   /// Make the law; `shear_viscosity` in nN s/um^2 (0: none), as in Corotational. Given stiffness and pre-tension are
   /// those of a cell of one element; an element that is a fraction v of the cell volume has k v^(1/3) and P v^(2/3),
@@ -41,10 +42,10 @@ class ShapeMemory final : public TurningElements {
   [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                     std::span<const Vec3> positions) const override;
 
-  [[nodiscard]] const LawDerivatives& derivatives() const override {
-    if (shear_viscosity_ > 0)
-      refuse_gradient("viscosity has no derivatives yet; set dynamics.shear_viscosity_Pa_s = 0");
-    return static_derivatives();
+  [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
+  void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
+                          const BeginningGradient& gradient) const override {
+    if (shear_viscosity_ > 0) add_viscous_gradient(*this, step, adjoint, gradient);
   }
 
   /// Return k of each element, nN/um.

@@ -15,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "mechanics/active/shape_activation.hpp"
 #include "mechanics/signals/reaction.hpp"
 #include "tissue/faces.hpp"
 #include "tissue/tissue.hpp"
@@ -68,12 +67,28 @@ class Signals {
   [[nodiscard]] std::optional<SignalFailure> advance(const Tissue& tissue, const Geometry& geometry, double duration_s,
                                                      Values& values) const;
 
+  /// Gradient of an outcome by the geometry of a step.
+  struct GeometryGradient {
+    std::vector<double> volumes_before, volumes;  // cells
+    std::span<Vec3> positions;                    // nodes
+  };
+  /// Return the gradient of an outcome by the concentrations before a step from that by those after it, and add that by
+  /// its geometry. The number of parts of the step is a constant.
+  [[nodiscard]] Values pull_back(const Tissue& tissue, const Geometry& geometry, double duration_s,
+                                 const Values& before, Values gradient, GeometryGradient& by_geometry) const;
+
   /// Return the signals of the tissue after a change.
   [[nodiscard]] Signals after(const Tissue& tissue, const TissueChange& change) const;
 
  private:
   struct Diffusion;
   struct Chemistry;
+  struct Parts;
+  /// Take a step and keep its parts.
+  [[nodiscard]] std::optional<SignalFailure> take_parts(const Tissue& tissue, const Geometry& geometry,
+                                                        double duration_s, const Values& values, Parts& result) const;
+  void add_conductance_gradient(const Tissue& tissue, const Vectors& positions, std::span<const double> of_faces,
+                                std::span<Vec3> gradient) const;
   [[nodiscard]] std::vector<double> conductances(const Tissue& tissue, const Vectors& positions) const;
 
   std::vector<SignalRule> rules_;

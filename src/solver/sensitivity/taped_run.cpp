@@ -9,7 +9,8 @@
 namespace plica {
 
 TapedState TapedState::of(const State& state) {
-  return {state.time_s, state.positions, state.multipliers, state.obstacle_forces, state.on_obstacle, state.internals};
+  return {state.time_s,      state.positions, state.multipliers, state.obstacle_forces,
+          state.on_obstacle, state.internals, state.signals};
 }
 
 Step TapedRun::step(std::size_t n) const {
@@ -35,7 +36,7 @@ namespace {
 /// Repeats steps with one model, as accurately as rounding allows.
 class Replay {
  public:
-  Replay(const Model& model, const RunMethod& method) : now_(rest_state(model)) {
+  Replay(const Model& model, const RunMethod& method) : model_(model), now_(rest_state(model)) {
     // Where contacts change, rounding may stop Newton's method before the first of these.
     for (const double force : {1e-12, 1e-10, 1e-8})
       steppers_.push_back(std::make_unique<NewtonStepper>(
@@ -50,9 +51,10 @@ class Replay {
     if (is_first_order) now_.trend = {};
     State next;
     StepReport report;
+    const std::optional<Model> later = grown(model_, model_, run_.states.front().internals, end_s);
     for (const auto& stepper : steppers_) {
-      report = stepper->advance(now_, end_s - now_.time_s, run_.steps() == 0, next);
-      if (report.converged()) return accept(end_s, std::move(next));
+      report = stepper->advance(now_, end_s - now_.time_s, run_.steps() == 0, next, later ? &*later : nullptr);
+      if (report.converged()) return accept(end_s, std::move(next), later ? *later : model_);
       stepper->forget_factor();
     }
     if (halvings == most_halvings)
@@ -64,13 +66,15 @@ class Replay {
   TapedRun run() && { return std::move(run_); }
 
  private:
-  void accept(double end_s, State next) {
+  void accept(double end_s, State next, const Model& model) {
     next.time_s = end_s;
+    if (const auto failure = advance_signals(model, now_, next)) throw std::runtime_error(failure->problem);
     run_.rates.push_back(rates_of(now_, next));
     run_.states.push_back(TapedState::of(next));
     now_ = std::move(next);
   }
 
+  const Model& model_;
   std::vector<std::unique_ptr<NewtonStepper>> steppers_;
   State now_;
   TapedRun run_;

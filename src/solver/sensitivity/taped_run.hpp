@@ -1,6 +1,7 @@
 // Solved steps of a run, as the way back reads them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "solver/linear/directions.hpp"
@@ -16,6 +17,7 @@ struct TapedState {
   std::vector<double> obstacle_forces;         // ObstacleContacts; nN
   std::vector<char> on_obstacle;               // ObstacleContacts
   std::vector<std::vector<double>> internals;  // laws
+  Signals::Values signals;                     // cells, by signal
 
   /// Take what the way back needs of a state.
   static TapedState of(const State& state);
@@ -27,8 +29,12 @@ struct TapedRun {
   std::vector<BackwardDifference> rates;  // steps
 
   [[nodiscard]] std::size_t steps() const { return rates.size(); }
-  /// Step n, from state n to state n + 1: a view of this run.
+  /// Step n, from state n to state n + 1, without its grown model: a view of this run.
   [[nodiscard]] Step step(std::size_t n) const;
+  /// Return a model of this run as grown at the end of step n, which follows from the time alone; empty if no cell has.
+  [[nodiscard]] std::optional<Model> grown_in(std::size_t n, const Model& model) const {
+    return grown(model, model, states.front().internals, states[n + 1].time_s);
+  }
   /// Solved iterate of step n.
   [[nodiscard]] Iterate at_end_of(std::size_t n) const;
 };

@@ -21,27 +21,43 @@ bool is_zero(std::span<const double> numbers) {
   return std::ranges::all_of(numbers, [](double number) { return number == 0; });
 }
 
+double product(const Signals::Values& a, const Signals::Values& b) {
+  double sum = 0;
+  for (std::size_t s = 0; s < a.size(); ++s)
+    for (std::size_t c = 0; c < a[s].size(); ++c) sum += a[s][c] * b[s][c];
+  return sum;
+}
+
 /// Solved adjoint problem of one step.
 struct StepAdjoint {
+  const TapedRun& run;
+  std::size_t number;
   const Step& step;
   const Iterate& at;
   const ExactSolve::Solution& solution;  // mu and nu
   const Vectors& on_obstacles;           // forces that fixed directions bear; empty without contacts
   const Internals& internals;            // gradient by internal states at the end of the step
+  const Signals::Values& signals;        // and by signals there
 };
 
 /// Return the outcome's dependence on a model, up to a constant: the part of its forces, targets, obstacles and
 /// memories along the adjoint.
-double along_adjoint(const Model& model, const StepAdjoint& adjoint) {
-  const auto& [step, at, solution, on_obstacles, internals] = adjoint;
+double along_adjoint(const Model& first_model, const StepAdjoint& adjoint) {
+  const auto& [run, number, step_of_run, at, solution, on_obstacles, internals, signals] = adjoint;
+  const std::optional<Model> later = run.grown_in(number, first_model);
+  const Model& model = later ? *later : first_model;
+  Step step = step_of_run;
+  step.grown = nullptr;
   double sum = 0;
   Vectors forces(at.positions.size(), Vec3::Zero());
   std::size_t l = 0;
   for_laws(model, step, [&](const Law& law, const Step& law_step) {
     law.add_forces(law_step, forces);
-    const std::vector<double>& of_next = internals[l++];
-    if (is_zero(of_next) || !law.derivatives().internal_has_parameters()) return;
-    const std::vector<double> next = law.next_internal(law_step);
+    const std::vector<double>& of_next = internals[l];
+    const std::vector<double>& next_of_run = run.states[number + 1].internals[l++];
+    if (is_zero(of_next)) return;
+    const std::vector<double> next = law.with_signals(law.derivatives().next_internal_like(law, law_step, next_of_run),
+                                                      run.states[number + 1].signals, step.end_time_s);
     for (std::size_t i = 0; i < next.size(); ++i) sum += of_next[i] * next[i];
   });
   for_held_constraints(model, [&](const Constraint& constraint, std::size_t first, std::size_t) {
@@ -51,6 +67,14 @@ double along_adjoint(const Model& model, const StepAdjoint& adjoint) {
     for (std::size_t f = 0; f < values.size(); ++f)
       sum += solution.multipliers[first + f] * (values[f] - constraint.targets()[f]);
   });
+  if (!signals.empty()) {
+    State begin, end;
+    begin.time_s = run.states[number].time_s, end.time_s = step.end_time_s;
+    begin.positions = run.states[number].positions, end.positions = at.positions;
+    begin.signals = run.states[number].signals, end.internals = run.states[number + 1].internals;
+    if (const auto failure = advance_signals(model, begin, end)) throw std::runtime_error(failure->problem);
+    sum += product(signals, end.signals);
+  }
   if (!on_obstacles.empty()) {
     const ObstacleContacts contacts(model);
     for (std::size_t place = 0; place < contacts.node_count(); ++place) {
@@ -86,10 +110,12 @@ class WayBack {
   std::optional<RunGradient> go() {
     const std::size_t last = outcome_.empty() ? 0 : outcome_.rbegin()->first;
     internals_ = zeros_like(run_.states[last].internals);
+    signals_.assign(model_.signals.size(), CellArray(model_.tissue.cells.size(), 0.0));
     for (std::size_t n = last; n-- > 0;) {
       if (input_.stop_requested && input_.stop_requested()) return std::nullopt;
       back_through(n);
     }
+    add_beginning();
     gradient_.linear_iterations = solver_.linear_iterations();
     gradient_.factorisations = solver_.factorisations();
     return std::move(gradient_);
@@ -108,7 +134,9 @@ class WayBack {
   }
 
   void back_through(std::size_t n) {
-    const Step step = run_.step(n);
+    const std::optional<Model> later = run_.grown_in(n, model_);
+    Step step = run_.step(n);
+    if (later) step.grown = &*later;
     const Iterate at = run_.at_end_of(n);
     Internals before = zeros_like(run_.states[n].internals);
     Vectors& by_end = by_positions(n + 1);
@@ -123,27 +151,76 @@ class WayBack {
       });
     };
 
-    // What internal states at the end say about positions there, and about earlier ones.
+    // What signals and internal states at the end say about positions there, and about earlier ones.
+    Internals internals = internals_;
     for_gradients([&](const LawDerivatives& law, const Step& law_step, std::size_t l, const BeginningGradient& to) {
-      if (!is_zero(internals_[l]))
-        law.add_internal_gradient(law_step, run_.states[n + 1].internals[l], internals_[l], by_end, to);
+      if (is_zero(internals[l])) return;
+      law.move_to_signals(internals[l], run_.states[n + 1].signals, signals_);
+      law.add_internal_gradient(law_step, run_.states[n + 1].internals[l], internals[l], by_end, to);
     });
+    const Signals::Values signals = std::exchange(signals_, signals_before(n, step, by_end, by_previous));
     // The forces' part, by the step's own system.
     model_.tissue.carry_hanging(by_end);
     if (parallel_squared_norm(by_end) > 0) {
       const ExactSolve::Solution solution = solver_.solve(step, at, by_end, input_.tolerance);
-      add_parameters({step, at, solution, on_obstacles(step, at, by_end), internals_});
+      add_parameters({run_, n, step, at, solution, on_obstacles(step, at, by_end), internals_, signals});
       for_gradients([&](const LawDerivatives& law, const Step& law_step, std::size_t l, const BeginningGradient& to) {
         law.add_force_gradient(law_step, solution.positions, to);
         if (input_.law != l) return;
-        const LawDerivatives& of_strengths = input_.unscaled_law ? input_.unscaled_law->derivatives() : law;
-        of_strengths.add_strength_gradient(law_step, solution.positions, gradient_.by_strength);
+        const std::unique_ptr<Law> unscaled = later && input_.unscaled_law ? grown_law(step) : nullptr;
+        const Law* of_strengths = unscaled ? unscaled.get() : input_.unscaled_law;
+        (of_strengths ? of_strengths->derivatives() : law)
+            .add_strength_gradient(law_step, solution.positions, gradient_.by_strength);
       });
     }
     internals_ = std::move(before);
     by_positions_.erase(n + 1);
   }
 
+  /// Return the gradient by the signals at the beginning of a step, and add that by positions at both ends.
+  [[nodiscard]] Signals::Values signals_before(std::size_t n, const Step& step, Vectors& by_end,
+                                               Vectors& by_previous) const {
+    if (signals_.empty()) return {};
+    const Model& model = at_end(model_, step);
+    const TapedState &begin = run_.states[n], &end = run_.states[n + 1];
+    const std::vector<double> before = model.volumes.volumes(begin.positions),
+                              after = model.volumes.volumes(end.positions);
+    Signals::GeometryGradient to{std::vector<double>(before.size(), 0.0), std::vector<double>(before.size(), 0.0),
+                                 by_end};
+    Signals::Values gradient = model.signals.pull_back(model.tissue, {before, after, end.positions},
+                                                       end.time_s - begin.time_s, begin.signals, signals_, to);
+    model.volumes.add_forces(begin.positions, to.volumes_before, by_previous);
+    model.volumes.add_forces(end.positions, to.volumes, by_end);
+    return gradient;
+  }
+  /// Add what parameters do to the signals before the first step, and to what follows them.
+  void add_beginning() {
+    if (signals_.empty()) return;
+    const TapedState& first = run_.states.front();
+    const auto along = [&](const Model& model) {
+      double sum = product(signals_, model.signals.initial());
+      for (std::size_t l = 0; l < model.laws.size(); ++l) {
+        if (is_zero(internals_[l])) continue;
+        const std::vector<double> internal = model.laws[l]->with_signals(first.internals[l], first.signals, 0);
+        for (std::size_t i = 0; i < internal.size(); ++i) sum += internals_[l][i] * internal[i];
+      }
+      return sum;
+    };
+    Internals internals = internals_;
+    for (std::size_t l = 0; l < model_.laws.size(); ++l)
+      model_.laws[l]->derivatives().move_to_signals(internals[l], first.signals, signals_);
+    for (std::size_t p = 0; p < input_.parameters.size(); ++p) {
+      const ModelPair& pair = *input_.parameters[p];
+      gradient_.by_parameter[p] += (along(*pair.more) - along(*pair.less)) / pair.difference;
+    }
+  }
+  /// Return the law with strengths of factor 1 at the end of a step in which cells grow.
+  [[nodiscard]] std::unique_ptr<Law> grown_law(const Step& step) const {
+    std::vector<GrowthTensor> tensors;
+    for (std::size_t l = 0; l < model_.laws.size(); ++l)
+      model_.laws[l]->grow(run_.states.front().internals[l], step.end_time_s, tensors);
+    return input_.unscaled_law->grown(step.grown->tissue, {}, tensors);
+  }
   [[nodiscard]] Vectors on_obstacles(const Step& step, const Iterate& at, const Vectors& by_end) const {
     if (input_.parameters.empty() || std::ranges::count(at.on_obstacle, char{0}) == std::ssize(at.on_obstacle))
       return {};
@@ -165,6 +242,7 @@ class WayBack {
   RunGradient gradient_;
   std::map<std::size_t, Vectors> by_positions_;  // states
   Internals internals_;                          // gradient by those at the end of the present step
+  Signals::Values signals_;                      // and by the signals there
 };
 
 }  // namespace

@@ -43,18 +43,6 @@ TEST(Cortex, DerivativesAgreeWithFiniteDifferences) {
   check_derivatives(Cortex(tissue, all_cells(tissue), {.side = CellSide::apical, .tension = 1}), tissue, 2);
 }
 
-TEST(Cortex, DerivativesOfARunAgreeWithFiniteDifferences) {
-  const Tissue tissue =
-      distorted_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}}, 2, 3);
-  for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
-    const Cortex law(tissue, all_cells(tissue), whole_rule(side));
-    std::vector<double> internal = law.first_internal(tissue);
-    Random random(4);
-    for (double& ratio : internal) ratio += random.number(0.2);
-    check_law_derivatives(law, tissue, 2, internal);
-  }
-}
-
 // A law keeps the tensions of its last iterate; no other iterate sees them.
 TEST(Cortex, WhatItKeepsIsOfTheSameIterate) {
   const Tissue tissue =
@@ -363,6 +351,16 @@ TEST(ShapeActivation, StartsOnceAndRemembersWhen) {
   const std::vector<double> then = state.internal(smaller, 30, before);
   EXPECT_EQ(then, (std::vector<double>{no, no, 30}));
   EXPECT_EQ(state.internal(tissue.rest_positions, 60, then), then);
+  // Or at the crossing: the apex has 0.8 of its area after half of the step from 20 s to 30 s.
+  ShapeActivation at_crossing = state;
+  at_crossing.start_at_crossing();
+  const Step step{.positions = smaller,
+                  .previous_positions = tissue.rest_positions,
+                  .previous_velocities = {},
+                  .rate_s = 10,
+                  .end_time_s = 30};
+  EXPECT_NEAR(at_crossing.after(step, before)[2], 25, 1e-9);
+  EXPECT_EQ(at_crossing.after(step, then), then);
   EXPECT_EQ(
       ShapeActivation(tissue, {.kind = Kind::starts_above, .threshold = 0.5}).internal(tissue.rest_positions, 0, {}),
       (std::vector<double>{0, 0, 0}));

@@ -29,6 +29,22 @@ TEST(WallFactors, GoByTheAngleOfTheNormal) {
   EXPECT_NEAR(direction_factor(along, face_at(0.3, std::numbers::pi / 2)), 1, 1e-12);  // x leaves the surface
 }
 
+TEST(WallFactors, OfADirectionHaveTheGradientOfDifferences) {
+  const WallDirection along{.strongest = 1.6, .weakest = 0.4};
+  Random random(3);
+  for (int k = 0; k < 5; ++k) {
+    std::array<Vec3, 4> face = face_at(random.number(3), random.number(1));
+    for (Vec3& x : face) x += random.vector(0.1);
+    const std::array<Vec3, 4> gradient = direction_gradient(along, face);
+    for (std::size_t i = 0; i < 4; ++i)
+      for (int axis = 0; axis < 3; ++axis) {
+        std::array<Vec3, 4> more = face, less = face;
+        more[i][axis] += 1e-5, less[i][axis] -= 1e-5;
+        EXPECT_NEAR(gradient[i][axis], (direction_factor(along, more) - direction_factor(along, less)) / 2e-5, 1e-7);
+      }
+  }
+}
+
 TEST(WallFactors, OfNoiseHaveMeanSpreadAndCorrelation) {
   constexpr int pairs = 20000;
   const double variance = std::log1p(noise.spread * noise.spread);

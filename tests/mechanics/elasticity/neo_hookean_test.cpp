@@ -52,6 +52,12 @@ TEST(NeoHookean, DerivativesAgreeWithFiniteDifferences) {
   }
 }
 
+TEST(NeoHookean, DerivativesOfARunAgreeWithFiniteDifferences) {
+  const Tissue tissue = distorted_block(two_cells, 2, 5);
+  const NeoHookean law(tissue, materials_of(tissue, {0.4, 0.1}, {2, 0}));
+  check_law_derivatives(law, tissue, 2, flowing_motion(law, tissue, 2, 1).internal);
+}
+
 TEST(NeoHookean, SemidefiniteTangentIsStifferAlongRotations) {
   const Tissue tissue = distorted_block(two_cells, 2, 5);
   check_semidefinite_tangent(law_of(tissue, 0.4), tissue, 4, true);

@@ -35,6 +35,53 @@ double total(std::span<const double> volumes, std::span<const double> concentrat
   return sum;
 }
 
+// A step of two signals that diffuse and react, with the area of cells too, in a tissue that moves: gradients by
+// concentrations, volumes and positions.
+TEST(Signals, DerivativesOfAStepAgreeWithFiniteDifferences) {
+  const Tissue tissue = sheet_of(40, 40, 20, both_periods);
+  SignalRule u = rule_of(tissue, "u"), v = rule_of(tissue, "v");
+  u.diffusion = 0.5, u.decay = 0.01, u.reaction = "k * u * (1 - u) * apical_area_ratio - v", u.constants = {{"k", 6}};
+  v.reaction = "2 * u - v * height_ratio";
+  for (double& source : u.sources) source = 0.02;
+  const Signals signals(tissue, {u, v});
+  Random random(8);
+  Signals::Values values = signals.initial(), of_after = values, d_values = values;
+  for (Signals::Values* all : {&values, &of_after, &d_values})
+    for (CellArray& array : *all)
+      for (double& c : array) c = all == &values ? 0.5 + random.number(0.4) : random.number();
+  Vectors x = tissue.rest_positions, dx = random.vectors(x.size());
+  for (Vec3& place : x) place += random.vector(0.3);
+  std::vector<double> before = volumes_of(tissue, tissue.rest_positions), after = volumes_of(tissue, x);
+  std::vector<double> d_before(before.size()), d_after = d_before;
+  for (std::vector<double>* all : {&d_before, &d_after})
+    for (double& volume : *all) volume = random.number(10);
+
+  constexpr double duration_s = 8;
+  Vectors by_positions(x.size(), Vec3::Zero());
+  Signals::GeometryGradient by{std::vector<double>(before.size(), 0.0), std::vector<double>(before.size(), 0.0),
+                               by_positions};
+  const Signals::Values by_values = signals.pull_back(tissue, {before, after, x}, duration_s, values, of_after, by);
+  const auto outcome = [&](double h) {
+    Signals::Values at = values;
+    Vectors there = x;
+    std::vector<double> then = before, now = after;
+    for (std::size_t s = 0; s < at.size(); ++s)
+      for (std::size_t c = 0; c < at[s].size(); ++c) at[s][c] += h * d_values[s][c];
+    for (std::size_t n = 0; n < x.size(); ++n) there[n] += h * dx[n];
+    for (std::size_t c = 0; c < then.size(); ++c) then[c] += h * d_before[c], now[c] += h * d_after[c];
+    EXPECT_FALSE(signals.advance(tissue, {then, now, there}, duration_s, at));
+    double sum = 0;
+    for (std::size_t s = 0; s < at.size(); ++s)
+      for (std::size_t c = 0; c < at[s].size(); ++c) sum += of_after[s][c] * at[s][c];
+    return sum;
+  };
+  double along = dot(by_positions, dx);
+  for (std::size_t c = 0; c < before.size(); ++c)
+    along += by.volumes_before[c] * d_before[c] + by.volumes[c] * d_after[c] + by_values[0][c] * d_values[0][c] +
+             by_values[1][c] * d_values[1][c];
+  EXPECT_NEAR(along, (outcome(1e-4) - outcome(-1e-4)) / 2e-4, 1e-7 * std::abs(along));
+}
+
 // Advances signals of a tissue that does not move.
 void advance_still(const Signals& signals, const Tissue& tissue, double duration_s, int steps,
                    Signals::Values& values) {
