@@ -22,6 +22,7 @@ import { TimeBar } from "./time_bar";
 import { ToolsBar } from "./tools_bar";
 
 const chartsApart = 700; // ms
+const chartsShare = 0.1; // of the time, at most, is spent on plots
 const mostCellsWithEdges = 5000;
 const movieLength = 8000; // ms
 const mostPictures = 80; // of a movie
@@ -49,7 +50,7 @@ class Studio {
   private views: EmbryoViews | null = null;
   private selection = new Set<number>();
   private charts: Chart[] = [];
-  private chartsAt = 0;
+  private chartsAt = 0; // not before, ms
   private chartRows = "";
   private readonly connection: Connection;
   private readonly forms: Forms;
@@ -114,7 +115,7 @@ class Studio {
       this.time.tick(now);
       this.askNow();
       if (!this.isRecording) this.views?.draw();
-      if (now - this.chartsAt > chartsApart) this.updateCharts(now);
+      if (now > this.chartsAt) this.updateCharts();
       requestAnimationFrame(tick);
     };
     requestAnimationFrame(tick);
@@ -431,17 +432,22 @@ class Studio {
     failed.append(show);
   }
 
-  private updateCharts(now: number): void {
+    this.state.set({ playing: run?.running === true && this.at === null });
+  private updateCharts(): void {
     const runs = this.chosen.beside === null ? [this.runs[0]] : this.runs;
     const rows = runs.map(({ series, label }) => `${label} ${series.rows.length}`).join();
     if (rows === this.chartRows || document.hidden) return;
     this.chartRows = rows;
-    this.chartsAt = now;
-    for (const chart of this.charts) chart.destroy();
-    this.charts = this.chosen.run <= 0 ? [] : seriesCharts(runs.filter(({ series }) => series.rows.length > 1),
-      this.looks)
-      .map((content) => new TimeChart(content, this.state));
-    byId("plots").replaceChildren(...this.charts.map(({ box }) => box));
+    const begun = performance.now();
+    const contents = this.chosen.run <= 0 ? [] : seriesCharts(runs.filter(({ series }) => series.rows.length > 1),
+      this.looks);
+    if (contents.length !== this.charts.length || !contents.every((content, i) => this.charts[i].take(content))) {
+      for (const chart of this.charts) chart.destroy();
+      this.charts = contents.map((content) => new TimeChart(content, this.state));
+      byId("plots").replaceChildren(...this.charts.map(({ box }) => box));
+    }
+    const now = performance.now();
+    this.chartsAt = now + Math.max(chartsApart, (now - begun) / chartsShare);
   }
 
   private listen(): void {
@@ -454,7 +460,7 @@ class Studio {
     document.addEventListener("keydown", (event) => this.key(event));
     followTheme(() => {
       this.views?.refresh();
-      this.chartRows = "";
+      for (const chart of this.charts) chart.rebuild();
     });
   }
 
