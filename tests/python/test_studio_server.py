@@ -1,4 +1,5 @@
 """The server of plica studio: what it gives, and what it refuses."""
+import asyncio
 import json
 import os
 import socket
@@ -15,7 +16,7 @@ pytest.importorskip("starlette")
 pytest.importorskip("uvicorn")
 client = pytest.importorskip("websockets.sync.client")
 
-from plica.studio.server import PAGE  # noqa: E402
+from plica.studio.server import PAGE, Page  # noqa: E402
 
 
 @pytest.fixture
@@ -169,6 +170,35 @@ def test_frames_come_over_the_connection(studio):
         assert shape["kind"] == "shape" and frame["kind"] == "frame" and frame["run"] == number
         assert len(body) == 4 * sum(count for _, _,
             count in frame["arrays"]) == 4 * (3 * shape["nodes"] + shape["cells"])
+
+
+def test_a_frame_that_cannot_be_read_yet_is_sent_at_the_next_change():
+    """While a resumed run drops frames, the page waits for one: forgotten, it would wait for ever."""
+    sent, answers = [], iter([IndexError("dropped"), [b"frame"]])
+
+    class Runs:
+        def frame_messages(self, want):
+            answer = next(answers)
+            if isinstance(answer, Exception):
+                raise answer
+            return answer
+
+    class Socket:
+        async def send_bytes(self, message):
+            sent.append(message)
+
+    async def push():
+        page = Page(Socket(), Runs())
+        page._send_states = lambda: asyncio.sleep(0)
+        page.wants[0] = {"run": 1, "field": "region"}
+        pushing = asyncio.create_task(page._push())
+        for _ in range(100):
+            page.wake.set()
+            await asyncio.sleep(0.01)
+        pushing.cancel()
+
+    asyncio.run(push())
+    assert sent == [b"frame"]
 
 
 def test_a_second_studio_names_the_first(studio, tmp_path):

@@ -136,7 +136,7 @@ export class Chart {
   private plot: uPlot | null = null;
   private line: TimeLine | null = null;
 
-  constructor(readonly content: ChartContent, private readonly state: State, private logarithmicTime = false) {
+  constructor(public content: ChartContent, private readonly state: State, private logarithmicTime = false) {
     this.many = new Set(content.curves.map((curve) => curve.run)).size > fewRuns;
     const unit = content.unit === "" ? "" : `, ${content.unit}`;
     this.box.append(element("figcaption", {}, content.title + unit, this.pointedValue), this.holder, this.legend);
@@ -156,6 +156,17 @@ export class Chart {
     for (const forget of this.forget) forget();
     this.sizes.disconnect();
     this.plot?.destroy();
+  }
+
+  /** Show other points of the same curves; false, and no change, where the curves are others. */
+  take(content: ChartContent): boolean {
+    const named = ({ title, curves }: ChartContent) => JSON.stringify([title, ...curves.map(({ name, column, run }) =>
+      [name, column, run.number, run.name])]);
+    if (named(content) !== named(this.content)) return false;
+    this.content = content;
+    this.plot!.setData(this.data());
+    this.showTime();
+    return true;
   }
 
   setLogarithmicTime(on: boolean): void {

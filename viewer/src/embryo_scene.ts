@@ -10,6 +10,7 @@ import { capsuleOutline, cutByPlane, cutOutlines, type CutPolygon } from "./sect
 import type { Cut } from "./state";
 
 const texels = 256;
+const mostFine = 8000; // facets drawn as four triangles about their centre, which preserves symmetry; more are drawn as two
 const lineColour = 0x1c1c22;
 const pickedColour = 0xe6007e;
 const shellColour = 0x7f8fa6;
@@ -68,6 +69,7 @@ export class EmbryoScene {
   private topology: Topology | null = null;
   private positions = new Float32Array(0);
   private values = new Float32Array(0);
+  private trianglesOfFacet = 4;
   private polygons: CutPolygon[] = [];
   private elementOfCapTriangle: number[] = [];
 
@@ -122,7 +124,8 @@ export class EmbryoScene {
     if (!topology) return -1;
     const skinHit = ray.intersectObject(this.boundary, false).find((hit) => !cut || this.plane.distanceToPoint(hit.point) > 0);
     const capHit = cut ? ray.intersectObject(this.cap, false)[0] : undefined;
-    const element = (hit: three.Intersection) => topology.elementOfFacet[Math.floor(hit.faceIndex! / 4)];
+    const element = (hit: three.Intersection) =>
+      topology.elementOfFacet[Math.floor(hit.faceIndex! / this.trianglesOfFacet)];
     if (capHit && (!skinHit || capHit.distance <= skinHit.distance))
       return topology.cellOfElement[this.elementOfCapTriangle[capHit.faceIndex!]];
     return skinHit ? topology.cellOfElement[element(skinHit)] : -1;
@@ -148,17 +151,17 @@ export class EmbryoScene {
       : new three.BufferGeometry();
   }
 
-  // New cells: arrays of the right size, and corners of triangles. Each facet has a fifth corner at its centre, which
-  // preserves symmetry.
+  // New cells: arrays of the right size, and corners of triangles. Each facet has a fifth corner at its centre.
   private take(topology: Topology): void {
     this.topology = topology;
     if (this.run.data.shell !== this.shellSize) this.fillShell(this.run.data.shell);
     this.positions = new Float32Array(3 * topology.nodes);
     this.values = new Float32Array(Math.max(topology.nodes, topology.cells));
     const facets = topology.facets.length / 4;
-    const triangles = new Uint32Array(12 * facets);
-    for (let f = 0; f < facets; ++f)
-      for (let i = 0; i < 4; ++i) triangles.set([5 * f + i, 5 * f + ((i + 1) % 4), 5 * f + 4], 12 * f + 3 * i);
+    const corners = facets > mostFine ? [0, 1, 2, 0, 2, 3] : [0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4];
+    this.trianglesOfFacet = corners.length / 3;
+    const triangles = new Uint32Array(corners.length * facets);
+    for (let f = 0; f < facets; ++f) corners.forEach((corner, i) => (triangles[corners.length * f + i] = 5 * f + corner));
     this.boundary.geometry.dispose();
     this.boundary.geometry = new three.BufferGeometry();
     this.boundary.geometry.setIndex(new three.BufferAttribute(triangles, 1));
@@ -174,20 +177,23 @@ export class EmbryoScene {
     const points = this.boundary.geometry.getAttribute("position") as three.BufferAttribute;
     const uv = this.boundary.geometry.getAttribute("uv") as three.BufferAttribute;
     const [to, parts] = [points.array as Float32Array, uv.array as Float32Array];
+    const { positions, values } = this;
     for (let f = 0; f < facets.length / 4; ++f) {
-      const middle = [0, 0, 0, 0];
+      const [centre, cell] = [15 * f + 12, cellOfElement[elementOfFacet[f]]];
+      to[centre] = to[centre + 1] = to[centre + 2] = 0;
+      let mean = 0;
       for (let i = 0; i < 4; ++i) {
         const node = facets[4 * f + i];
         for (let k = 0; k < 3; ++k) {
-          to[15 * f + 3 * i + k] = this.positions[3 * node + k];
-          middle[k] += this.positions[3 * node + k] / 4;
+          to[15 * f + 3 * i + k] = positions[3 * node + k];
+          to[centre + k] += positions[3 * node + k] / 4;
         }
-        const value = this.values[field.on_nodes ? node : cellOfElement[elementOfFacet[f]]];
-        parts[10 * f + 2 * i] = this.texel(field, value);
-        middle[3] += value / 4;
+        if (!field.on_nodes) continue;
+        parts[10 * f + 2 * i] = this.texel(field, values[node]);
+        mean += values[node] / 4;
       }
-      to.set(middle.slice(0, 3), 15 * f + 12);
-      parts[10 * f + 8] = this.texel(field, middle[3]);
+      if (field.on_nodes) parts[10 * f + 8] = this.texel(field, mean);
+      else for (let i = 0, part = this.texel(field, values[cell]); i < 5; ++i) parts[10 * f + 2 * i] = part;
     }
     points.needsUpdate = uv.needsUpdate = true;
     this.boundary.geometry.boundingSphere = null;
@@ -202,9 +208,9 @@ export class EmbryoScene {
   private fillLines(topology: Topology): void {
     const points = this.lines.geometry.getAttribute("position") as three.BufferAttribute;
     const to = points.array as Float32Array;
-    topology.outlines.forEach((node, i) => {
-      for (let k = 0; k < 3; ++k) to[3 * i + k] = this.positions[3 * node + k];
-    });
+    const { outlines } = topology;
+    for (let i = 0; i < outlines.length; ++i)
+      for (let k = 0; k < 3; ++k) to[3 * i + k] = this.positions[3 * outlines[i] + k];
     points.needsUpdate = true;
   }
 

@@ -12,6 +12,7 @@ const clickTolerance = 4; // pixels between press and release
 const turnStep = 0.12; // rad a key press
 const closeUpSize = 2.5; // half of a close-up's height / radius of its cell
 const settleTime = 200; // ms without a change after which a picture is drawn finely
+const settlePictures = 4; // times that a picture takes, after which it is, where drawing is slow
 
 /** View of all runs. Throws without WebGL. */
 export class EmbryoViews {
@@ -22,6 +23,8 @@ export class EmbryoViews {
   private focus: RunView | null = null; // looks at the picked cell until a view is chosen
   private isFine = false;
   private changedAt = 0; // ms
+  private isDrawn = false; // at the last refresh
+  private drawingTime = 0; // ms from one picture to where the browser asks for the next
   private shape = ""; // layout of the page that determines picture sizes
   private leader: RunView | null = null; // camera moved by the user; the others report changes, too
 
@@ -56,11 +59,13 @@ export class EmbryoViews {
     const drawable = this.views.filter((view) => view.isDrawable);
     for (const view of drawable) view.controls.update();
     const now = performance.now();
+    if (this.isDrawn) this.drawingTime = now - this.changedAt;
     const changed = drawable.filter((view) => view.stale || view.moved);
-    if (changed.length > 0) this.changedAt = now;
-    const settled =
-      this.painter.inSoftware && !this.isFine && now - this.changedAt > settleTime && !this.state.now.playing;
-    if (changed.length === 0 && !settled) return;
+    this.isDrawn = changed.length > 0;
+    if (this.isDrawn) this.changedAt = now;
+    const settled = this.painter.inSoftware && !this.isFine && !this.state.now.playing &&
+      now - this.changedAt > Math.max(settleTime, settlePictures * this.drawingTime);
+    if (!this.isDrawn && !settled) return;
     this.isFine = settled;
     const ratio = !this.painter.inSoftware ? screenRatio : settled ? 2 : 1;
     for (const view of settled ? drawable : changed) {

@@ -18,6 +18,13 @@ STARTS: dict[str, Table] = {
     "sheet": {"format": 1, "title": "Sheet of 400 cells to paint", "time": {"end_s": 1200},
               "embryo": {"shape": "sheet", "length_um": 100, "width_um": 160, "cell_count": 400, "cell_height_um": 15}},
 }
+# Values without which a new table is refused, since it would have no effect; by first part of its name.
+BEGUN: dict[str, Table] = {
+    "ablation": {"at_s": 0}, "cortex": {"tension_mN_per_m": 1}, "division": {"at_s": 60},
+    "elasticity": {"young_modulus_Pa": 1000}, "extrusion": {"apical_area_below_um2": 5},
+    "foundation": {"stiffness_nN_per_um3": 0.002}, "growth": {"rate_per_h": 0.6}, "monitor": {"axis": "z"},
+    "region": {"x_um": [-10, 10]}, "signal": {"initial": 1}, "stop": {"above": 0},
+}
 Changes = Mapping[str, Any]  # by dotted key; None removes a key or a table
 
 
@@ -40,6 +47,21 @@ def row_of(key: str, tables: list[Table]) -> Table:
             if rest == row["key"]:
                 return dict(row)
     return {}
+
+
+def begun(kind: str, region: str, table: Table, tables: list[Table]) -> Table:
+    """Return a new table of a kind, "cortex" say, for a scenario: its required keys, with values that are accepted."""
+    rows = next((one["rows"] for one in tables if one["path"] == f"{kind}.*"), [])
+    made: Table = {row["key"]: 0 if row["type"] == "number" else (row["words"] or [""])[0]
+                   for row in rows if row["required"] and "." not in row["key"]}
+    if any(row["key"] == "region" for row in rows):
+        made["region"] = region
+    if kind == "stop":
+        monitors = list(table.get("monitor", {}))
+        if not monitors:
+            raise ValueError("stop: no monitor, which a criterion observes; add one first")
+        made["monitor"] = monitors[0]
+    return made | BEGUN.get(kind, {})
 
 
 def typed(value: Any, kind: str) -> Any:

@@ -15,6 +15,9 @@ from pathlib import Path
 from time import monotonic
 from typing import Any, Optional
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .. import _core
 from ..errors import FileError, NumericsError, PlicaError
 from ..scenario import Scenario
@@ -40,7 +43,7 @@ class StudioRun:
         self.results, self.kept = directory / "results", directory / "kept"
         self.kept.mkdir(parents=True, exist_ok=True)
         self.file = FrameFile(directory / "frames.bin")
-        self.shapes = [path.read_bytes() for path in sorted(directory.glob("shape-*.bin"))]
+        self.shapes = sorted(directory.glob("shape-*.bin"))
         self.columns: list[str] = []
         self.rows: list[list[Optional[float]]] = []
         self.notes: list[str] = []
@@ -52,7 +55,8 @@ class StudioRun:
         self._told, self._goal_s, self._steps_left = told, -math.inf, 0
         self._order = threading.Condition()
         self._thread: Optional[threading.Thread] = None
-        self._closing, self._divisions = False, 0
+        self._closing = False
+        self._hexahedra: Optional[NDArray[np.int32]] = None  # of the last shape
         self._shown_at, self._checkpoint = -math.inf, (0, 0)
         self._read_rows()
 
@@ -177,8 +181,6 @@ class StudioRun:
         self.rows = [row for row in self.rows if (row[0] or 0.0) <= sim.time_s + INSTANT_S]
         if not self.rows:
             self.rows.append(self._row(sim))
-        if not self.shapes:
-            self._add_shape(sim)
         return sim
 
     def _continued(self) -> Optional[Simulation]:
@@ -275,12 +277,15 @@ class StudioRun:
 
     # Frames
 
-    def _add_shape(self, sim: Simulation) -> None:
-        """Add the shape that follows a division, or the first."""
-        shape = shape_message(sim, f"{self.number}/{len(self.shapes)}")
-        (self.directory / f"shape-{len(self.shapes):04d}.bin").write_bytes(shape)
-        self.shapes.append(shape)
-        self._divisions = sim._core.divisions
+    def _follow_shape(self, sim: Simulation) -> None:
+        """Add the first shape, or the one that follows a division, an exchange or an extrusion."""
+        hexahedra = sim.hexahedra
+        if self._hexahedra is not None and np.array_equal(hexahedra, self._hexahedra):
+            return
+        self._hexahedra = hexahedra
+        path = self.directory / f"shape-{len(self.shapes):04d}.bin"
+        path.write_bytes(shape_message(sim, f"{self.number}/{len(self.shapes)}"))
+        self.shapes.append(path)
 
     def _show(self, sim: Simulation, force: bool = False) -> None:
         now = monotonic()
@@ -288,8 +293,7 @@ class StudioRun:
         if not is_new or self.file.is_full or (not force and now - self._shown_at < FRAME_APART_S):
             return
         self._shown_at = now
-        if sim._core.divisions != self._divisions:
-            self._add_shape(sim)
+        self._follow_shape(sim)
         self.file.add(sim.time_s, len(self.shapes) - 1, sim.positions.astype("f4"), values_now(sim))
         self._told()
 
@@ -333,4 +337,4 @@ class StudioRun:
         first = int(want.get("rows", 0))
         head |= {"columns": shown.columns, "first_row": first, "rows": shown.rows[first:]}
         known = shape in want.get("shapes", [])
-        return [*([] if known else [self.shapes[frame.shape]]), packed(head, arrays)]
+        return [*([] if known else [self.shapes[frame.shape].read_bytes()]), packed(head, arrays)]

@@ -112,9 +112,8 @@ class Page:
             for slot, want in list(self.wants.items()):
                 try:
                     messages = await asyncio.to_thread(self.session.frame_messages, want)
-                except (OSError, LookupError, TypeError, ValueError):  # a run that has just been removed, or nonsense
-                    self.wants.pop(slot, None)
-                    continue
+                except (OSError, LookupError, TypeError, ValueError):
+                    continue  # a run is just being resumed or removed, or nonsense: tried again at the next change
                 if messages and self.wants.get(slot) is want:
                     del self.wants[slot]
                     for message in messages:

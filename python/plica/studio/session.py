@@ -19,7 +19,7 @@ from ..errors import PlicaError
 from ..scenario import Scenario, _items, builtin_scenarios
 from ..simulation import Simulation
 from .acts import act, end_of_act, running_acts, time_of_act
-from .draft import STARTS, Draft, Table, row_of, schema, text_of, typed
+from .draft import STARTS, Draft, Table, begun, row_of, schema, text_of, typed
 from .rest import Rest
 from .run import StudioRun
 from .tissues import ENDINGS, Candidate
@@ -225,6 +225,17 @@ class Session:
 
     def do_set(self, changes: Table, drag: str = "") -> Table:
         self._drafted().set(self._typed(changes), str(drag))
+        self._draft_changed()
+        return {"revision": self.revision}
+
+    def do_add(self, kind: str, name: str, region: str) -> Table:
+        """Add a table of a kind, "cortex" say, that acts in a region."""
+        if not NAME.fullmatch(name):
+            raise Refused(f"{name[:60] or 'name'}: not a valid name of a table; use letters, digits, _ and -")
+        draft = self._drafted()
+        if name in draft.table.get(kind, {}):
+            raise Refused(f"{kind}.{name}: exists; give another name")
+        draft.set({f"{kind}.{name}": begun(kind, region, draft.table, self.tables)})
         self._draft_changed()
         return {"revision": self.revision}
 

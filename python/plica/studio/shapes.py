@@ -14,7 +14,7 @@ from .messages import packed
 FACES = np.array([[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7]])
 NODE_FIELDS = ("displacement", "speed")
 CELL_FIELDS = ("area-ratio", "pressure", "volume", "contraction", "generation", "self-intersections")
-STRENGTH = "strength of "  # begins the names of fields that laws have
+STRENGTH, SIGNAL = "strength of ", "signal "  # begin the names of fields that laws and signals have
 Floats = NDArray[np.float32]
 
 
@@ -44,11 +44,12 @@ def surface(hexahedra: NDArray[np.int32], cell_of: NDArray[np.int32]) -> dict[st
 
 
 def shape_message(sim: Simulation, name: str) -> bytes:
-    """Pack everything about a tissue that stays while its cells do not divide."""
+    """Pack everything about a tissue that stays while its cells neither divide nor exchange neighbours."""
     rest, data = sim.rest_positions, sim.cell_data
     regions = sim.regions
-    known = {field["array"] for field in _core.colour_fields().values()}
-    own = {k: v for k, v in data.items() if k not in known and k not in _core_columns() and np.isfinite(v).all()}
+    known = {field["array"] for field in _core.colour_fields().values()} | _core_columns()
+    known |= {f"signal_{name}" for name in sim._core.signals}
+    own = {k: v for k, v in data.items() if k not in known and np.isfinite(v).all()}
     shell = sim._scenario._core.shell(rest)
     arrays: dict[str, Any] = {
         "elements": sim.hexahedra.astype("u4"), "cell_of_element": sim.hexahedron_cell.astype("u4"),
@@ -60,7 +61,7 @@ def shape_message(sim: Simulation, name: str) -> bytes:
     reach = np.abs(rest).max(axis=0) * 0.15
     return packed({
         "kind": "shape", "shape": name, "nodes": len(rest), "cells": len(sim.pressures), "regions": list(regions),
-        "strengths": [STRENGTH + law for law in sim._core.laws(True)],
+        "changing": [*(STRENGTH + law for law in sim._core.laws(True)), *(SIGNAL + name for name in sim._core.signals)],
         "own_fields": {k: _core.colour_range("volume", float(v.min()), float(v.max())) for k, v in own.items()},
         "box": {"low": (rest.min(axis=0) - reach).tolist(), "high": (rest.max(axis=0) + reach).tolist()},
         "shell": shell and {"half_axis_um": shell[0], "radius_um": shell[1]},
@@ -80,6 +81,7 @@ def values_now(sim: Simulation) -> dict[str, Floats]:
               "speed": np.linalg.norm(sim.velocities, axis=1)}
     for name in CELL_FIELDS:
         values[name] = np.nan_to_num(data[fields[name]["array"]])
+    values |= {f"{SIGNAL}{name}": array for name, array in sim._core.signals.items()}
     return {name: array.astype("f4") for name, array in (values | strengths_now(sim)).items()}
 
 

@@ -100,7 +100,7 @@ export interface Listener {
   edited(): void;
 }
 
-const editing = ["open", "use", "set", "paint", "undo", "redo"];
+const editing = ["open", "use", "set", "add", "paint", "undo", "redo"];
 
 const patience = 800; // ms before another attempt
 

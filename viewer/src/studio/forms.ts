@@ -320,7 +320,7 @@ export class Forms {
     return element("div", { class: "field" }, button, fault);
   }
 
-  // A new table: its required keys first, made when they are valid.
+  // A new table, begun by the server with values that are accepted.
   private adding(): HTMLElement {
     const kind = element("select", { id: "add-kind", "aria-label": "Kind of table" });
     const name = element("input", { type: "text", id: "add-name", placeholder: "name",
@@ -335,11 +335,10 @@ export class Forms {
     kind.addEventListener("change", showRegion);
     form.addEventListener("submit", (event) => {
       event.preventDefault();
-      const path = `${kind.value.replace(".*", "")}.${name.value.trim()}`;
-      const schema = this.schema.find((one) => one.path === kind.value)!;
-      const table = startOf(schema, region.value);
+      const given = { kind: kind.value.replace(".*", ""), name: name.value.trim(), region: region.value };
+      const path = `${given.kind}.${given.name}`;
       this.opened.add(path).add(`more of ${path}`); // a new table has few keys yet
-      this.connection.order("set", { changes: { [path]: table } }).then(
+      this.connection.order("add", given).then(
         () => {
           [fault.textContent, name.value] = ["", ""];
           this.list.querySelector(`[data-table="${CSS.escape(path)}"]`)?.scrollIntoView({ block: "nearest" });
@@ -357,19 +356,4 @@ export class Forms {
         !`${details.dataset.table} ${schema?.rows.map(({ key }) => key).join(" ")}`.toLowerCase().includes(text);
     }
   }
-}
-
-// Values without which a new table is refused, since it would have no effect.
-const starts: Record<string, Table> = {
-  "ablation.*": { at_s: 0 }, "cortex.*": { tension_mN_per_m: 1 }, "division.*": { at_s: 60 },
-  "elasticity.*": { young_modulus_Pa: 1000 }, "monitor.*": { axis: "z" }, "region.*": { x_um: [-10, 10] },
-};
-
-function startOf({ path, rows }: SchemaTable, region: string): Table {
-  const table: Table = {};
-  for (const { key, required, type, words: allowed } of rows) {
-    if (key === "region") table[key] = region;
-    else if (required && !key.includes(".")) table[key] = type === "number" ? 0 : (allowed[0] ?? "");
-  }
-  return { ...table, ...starts[path] };
 }

@@ -12,6 +12,10 @@ function emptyData(name: string): RunData {
   };
 }
 
+function hasEqual(a: Uint32Array, b: Uint32Array): boolean {
+  return a.length === b.length && a.every((value, i) => value === b[i]);
+}
+
 export class LiveTopology extends Topology {
   readonly rest: Float32Array;
   now: Float32Array; // positions
@@ -101,7 +105,7 @@ export class LiveTopology extends Topology {
 
   private difference(): Float32Array | null {
     const other = this.other;
-    if (!other || other.nodes !== this.nodes) return null;
+    if (!other || !hasEqual(other.elements, this.elements)) return null;
     const distances = new Float32Array(this.nodes);
     for (let n = 0; n < this.nodes; ++n) {
       const [x, y, z] = [0, 1, 2].map((k) => this.now[3 * n + k] - other.now[3 * n + k]);

@@ -22,7 +22,9 @@ import { TimeBar } from "./time_bar";
 import { ToolsBar } from "./tools_bar";
 
 const chartsApart = 700; // ms
+const chartsShare = 0.1; // of the time, at most, is spent on plots
 const mostCellsWithEdges = 5000;
+const mostShapes = 30; // kept, since each exchange of neighbours makes another; the server sends one again
 const movieLength = 8000; // ms
 const mostPictures = 80; // of a movie
 const movieWidth = 1000; // pixels, at most
@@ -49,7 +51,7 @@ class Studio {
   private views: EmbryoViews | null = null;
   private selection = new Set<number>();
   private charts: Chart[] = [];
-  private chartsAt = 0;
+  private chartsAt = 0; // not before, ms
   private chartRows = "";
   private readonly connection: Connection;
   private readonly forms: Forms;
@@ -114,7 +116,7 @@ class Studio {
       this.time.tick(now);
       this.askNow();
       if (!this.isRecording) this.views?.draw();
-      if (now - this.chartsAt > chartsApart) this.updateCharts(now);
+      if (now > this.chartsAt) this.updateCharts();
       requestAnimationFrame(tick);
     };
     requestAnimationFrame(tick);
@@ -193,6 +195,9 @@ class Studio {
     const stem = /^(0|-1)\//.exec(head.shape)?.[0]; // of a tissue at rest, which no later frame shows again
     if (stem) for (const name of this.shapes.keys()) if (name.startsWith(stem)) this.shapes.delete(name);
     this.shapes.set(head.shape, new LiveTopology(head, arrays));
+    const shown = this.runs.map((run) => run.shown?.shape.shape);
+    for (const name of this.shapes.keys())
+      if (this.shapes.size > mostShapes && name !== head.shape && !shown.includes(name)) this.shapes.delete(name);
   }
 
   private takeFrame(message: Message<Frame>): void {
@@ -224,18 +229,27 @@ class Studio {
     if (this.chosen.run === 0) this.forms.fit(shape, topology.regionSizes);
     const own = Object.entries(shape.own_fields).map(([name, range]): Field => (
       { name, label: name, unit: "", on_nodes: false, scale: "from-zero", map: "from_zero", ...rangeOf(range) }));
-    const strengths = shape.strengths.map((name): Field => (
+    const changing = shape.changing.map((name): Field => (
       { name, label: name, unit: "", on_nodes: false, scale: "from-zero", map: "from_zero", low: 0, high: 1 }));
     const names = this.page.fields.map(({ name }) => name).join();
-    this.page.fields = [...this.known, ...strengths, ...own, difference];
+    this.page.fields = [...this.known, ...changing, ...own, difference];
     if (before && names !== this.page.fields.map(({ name }) => name).join()) this.showControls();
-    if (before?.cells !== topology.cells) this.selection = new Set();
+    this.keepSelection(before, topology);
     if (before && hasSameSize(before, topology)) return; // at most, cells have divided
     this.page.views = Object.entries(shape.views).map(([name, view]) => ({ name, title: name, label: "", ...view }));
     this.page.view_cut_um = 0.01;
     this.state.set({ view: this.page.views[0], cut: null, edges: topology.cells <= mostCellsWithEdges });
     this.views?.remeasure();
     this.showControls();
+  }
+
+  // Cells are selected by index, which divisions and extrusions change; another tissue has other cells.
+  private keepSelection(before: LiveTopology | null, topology: LiveTopology): void {
+    if (this.selection.size === 0 || !before) return;
+    const isSame = hasSameSize(before, topology) && (this.chosen.run > 0 || before.cells === topology.cells);
+    const cellOf = new Map(Array.from(topology.cellIds, (id, cell): [number, number] => [id, cell]));
+    const kept = [...this.selection].map((cell) => cellOf.get(before.cellIds[cell])).filter((cell) => cell !== undefined);
+    this.select(new Set(isSame ? kept : []));
   }
 
   private showControls(): void {
@@ -418,6 +432,7 @@ class Studio {
     const run = this.panel.run(this.chosen.run);
     const shown = this.chosen.run <= 0 ? 0 : this.runs[0].time;
     this.time.show(run, shown);
+    this.state.set({ playing: run?.running === true && this.at === null });
     this.tools?.showActs(run ? timeText(Number(shown.toPrecision(4))) : null, run?.lasting ?? []);
     const failed = byId("failure");
     failed.hidden = run?.status !== "failed";
@@ -431,17 +446,21 @@ class Studio {
     failed.append(show);
   }
 
-  private updateCharts(now: number): void {
+  private updateCharts(): void {
     const runs = this.chosen.beside === null ? [this.runs[0]] : this.runs;
     const rows = runs.map(({ series, label }) => `${label} ${series.rows.length}`).join();
     if (rows === this.chartRows || document.hidden) return;
     this.chartRows = rows;
-    this.chartsAt = now;
-    for (const chart of this.charts) chart.destroy();
-    this.charts = this.chosen.run <= 0 ? [] : seriesCharts(runs.filter(({ series }) => series.rows.length > 1),
-      this.looks)
-      .map((content) => new TimeChart(content, this.state));
-    byId("plots").replaceChildren(...this.charts.map(({ box }) => box));
+    const begun = performance.now();
+    const contents = this.chosen.run <= 0 ? [] : seriesCharts(runs.filter(({ series }) => series.rows.length > 1),
+      this.looks);
+    if (contents.length !== this.charts.length || !contents.every((content, i) => this.charts[i].take(content))) {
+      for (const chart of this.charts) chart.destroy();
+      this.charts = contents.map((content) => new TimeChart(content, this.state));
+      byId("plots").replaceChildren(...this.charts.map(({ box }) => box));
+    }
+    const now = performance.now();
+    this.chartsAt = now + Math.max(chartsApart, (now - begun) / chartsShare);
   }
 
   private listen(): void {
@@ -454,7 +473,7 @@ class Studio {
     document.addEventListener("keydown", (event) => this.key(event));
     followTheme(() => {
       this.views?.refresh();
-      this.chartRows = "";
+      for (const chart of this.charts) chart.rebuild();
     });
   }
 

@@ -9,7 +9,7 @@ export interface Shape {
   nodes: number;
   cells: number;
   regions: string[];
-  strengths: string[]; // fields that active laws have
+  changing: string[]; // fields of its active laws and signals
   own_fields: Record<string, [number, number]>;
   box: { low: Vec3; high: Vec3 };
   shell: RunData["shell"];
