@@ -2,7 +2,7 @@
 """Put the results of `plica reproduce paper` into docs/science/reproduction.md.
 
 Usage: update_reproduction.py DIR, the --out directory of a full (not --quick) run. Needs Matplotlib, and `plica` (or the program that
-PLICA names). Written are docs/science/reproduction.csv, the page's tables between <!-- claims --> or <!-- errors --> (from
+PLICA names). Written are docs/science/reproduction.csv, the page's table between <!-- errors --> (from
 reproduction-errors.csv, by docs/science/readings.py) and <!-- end -->, the counts of verdicts on three pages, and docs/images/reproduction/.
 """
 import csv
@@ -23,8 +23,7 @@ COUNTS = {PAGE: "Of {} claims, {} are reproduced, {} under this reading, and {} 
           SCIENCE / "README.md": "of {}, {} hold, {} under one reading, {} do not",
           SCIENCE.parent / "developers/verification.md": "{} claims of Demongeot et al. (2016) | {} hold, {} under one reading, {} do not"}
 VERDICTS = ("reproduced", "under this reading", "not reproduced")
-SUBJECTS = {"2.1": "meshes and sizes", "2.3": "contraction", "2.5": "volume", "2.6": "cell division", "2.7": "stop", "3.1": "furrow of the pill",
-            "3.2": "furrow of the sphere", "3.3": "vitelline membrane", "4": "discussion", "5": "conclusion", "note": "notes"}
+SUBJECTS = ("2.1", "2.3", "2.5", "2.6", "2.7", "3.1", "3.2", "3.3", "4", "5", "note")  # sections of the paper, in order
 # Outcomes beside their printed value, for the trade-off.
 LINES = {("pill", "peak-ratio"): ("pill's speed ratio / 3.65", 3.65), ("sphere", "peak-ratio"): ("sphere's speed ratio / 1.23", 1.23),
          ("sphere", "depth"): ("sphere's depth / 27.44 µm", 27.44), ("pill", "vce-at-equal-speeds"): ("VCE at equal speeds / 15 µm", 15),
@@ -51,17 +50,6 @@ def fill(page, name, text):
     if count != 1:
         sys.exit(f"{PAGE}: no text between <!-- {name} --> and <!-- end -->")
     return filled
-
-
-def counts_of(rows):
-    """Rows of a table: how many of the claims have each verdict, by section, and in all."""
-    of_subject = {subject: [0] * len(VERDICTS) for subject in SUBJECTS}
-    for row in rows:
-        of_subject[subject_of(row["source"])][VERDICTS.index(row["verdict"])] += 1
-    counts = [(f"{number}, {subject}" if number != "note" else subject, counts)
-              for (number, subject), counts in zip(SUBJECTS.items(), of_subject.values())]
-    counts.append(("all", [sum(column) for column in zip(*of_subject.values())]))
-    return [[name, *map(str, counts)] for name, counts in counts]
 
 
 def save(figure, name):
@@ -99,22 +87,21 @@ def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     results = Path(sys.argv[1])
-    rows = sorted(read(results / "outcomes.csv"), key=lambda row: list(SUBJECTS).index(subject_of(row["source"])))
+    rows = sorted(read(results / "outcomes.csv"), key=lambda row: SUBJECTS.index(subject_of(row["source"])))
     with (SCIENCE / "reproduction.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["section", "claim", "printed", "ours", "other_readings", "verdict", "because", "experiment", "outcome"])
         writer.writerows([row[key] for key in ("source", "question", "observed", "number", "all_draws", "verdict", "because", "experiment", "outcome")]
                          for row in rows)
 
-    counts = counts_of(rows)
-    page = fill(PAGE.read_text(encoding="utf-8"), "claims", table(["section", *VERDICTS], counts))
+    counts = [sum(row["verdict"] == verdict for row in rows) for verdict in VERDICTS]
     with (SCIENCE / "reproduction-errors.csv").open(newline="", encoding="utf-8") as file:
         header, *errors = csv.reader(file)
-    page = fill(page, "errors", table(header, errors))
+    page = fill(PAGE.read_text(encoding="utf-8"), "errors", table(header, errors))
     PAGE.write_text(page, encoding="utf-8")
     for path, text in COUNTS.items():
         pattern = re.escape(text).replace(r"\{\}", r"\d+")
-        page, found = re.subn(pattern, text.format(len(rows), *counts[-1][1:]), path.read_text(encoding="utf-8"))
+        page, found = re.subn(pattern, text.format(len(rows), *counts), path.read_text(encoding="utf-8"))
         if found != 1:
             sys.exit(f"{path}: has {found} counts of verdicts, as in: {text}")
         path.write_text(page, encoding="utf-8")
