@@ -12,6 +12,7 @@ from style import (APICAL, BASAL, CELL, FAINT, FORCE, LATERAL, TEXT, VITELLINE, 
                    save)
 
 BIG = 20  # formulas
+LAYER = "#0e7c86"  # extracellular matrix
 
 
 def contraction():
@@ -536,6 +537,33 @@ def foundation():
     save(figure, "theory/foundation.svg")
 
 
+def matrix():
+    figure, axes = canvas(760, 300)
+    place = np.linspace(30, 450, 8)
+    base = 175 - 105 * np.exp(-((place - 240) / 80) ** 2)
+    layer = np.linspace(30, 450, 200)
+    below = np.interp(layer, place, base) - 12
+    for k in range(7):
+        tops = [(x, y + 80) for x, y in zip(place, base)]
+        cell(axes, tops[k], tops[k + 1], (place[k + 1], base[k + 1]), (place[k], base[k]), width=3)
+    for part, how in ((layer < 175, {}), (layer > 305, {}), ((layer > 175) & (layer < 305), {"linestyle": (0, (1, 1.2)), "alpha": 0.6})):
+        line(axes, *zip(layer[part], below[part]), color=LAYER, width=6, **{"solid_capstyle": "butt", **how})
+    label(axes, (88, 110), "layer", LAYER)
+    label(axes, (240, 22), "digested: program, region", LAYER)
+    label(axes, (240, 118), "cells")
+    curve = inset(figure, (545, 62, 200, 220), "stretch $\\lambda$", "force / reference width")
+    stretch = np.linspace(0.9, 2, 100)
+    curve.axhline(0, color=FAINT, linewidth=1)
+    curve.plot(stretch, stretch - stretch**-5, color=LAYER)
+    curve.plot(stretch, stretch - stretch**-2, color=APICAL)
+    curve.set(xlim=(0.9, 2), ylim=(-0.6, 2.1))
+    curve.set_xticks([1], ["1"])
+    curve.set_yticks([0, 1], ["0", "$\\mu h$"])
+    label(curve, (1.3, 1.7), "in all\ndirections", LAYER)
+    label(curve, (1.65, 0.7), "in one", APICAL)
+    save(figure, "theory/matrix.svg")
+
+
 def ties():
     figure, axes = canvas(760, 320)
     planes, inside = [], []
@@ -666,7 +694,7 @@ def energy():
 
 
 LAWS = (contraction, cortex, division, exchange, growth, corotational, neo_hookean, shape_memory, corner_barrier, cell_volume, vitelline, shell_drag,
-        coulomb, self_contact, enclosed_volume, surroundings, foundation, ties, mirror, periodic, signals, energy)
+        coulomb, self_contact, enclosed_volume, surroundings, foundation, matrix, ties, mirror, periodic, signals, energy)
 
 if __name__ == "__main__":
     for law in LAWS:

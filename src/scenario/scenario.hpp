@@ -370,6 +370,14 @@ struct FoundationInput : ActingInput {
   std::string resists = "all";  // all | normal | one-sided
 };
 
+/// Membrane of extracellular matrix bonded to faces; the program scales its stiffness.
+struct MatrixInput : ActingInput {
+  MatrixInput() { faces = "basal"; }
+  std::optional<double> young_modulus_Pa, thickness_um;
+  double prestretch = 1;
+  std::optional<double> relaxation_s;
+};
+
 /// Laser ablation or optogenetic inhibition: loss of cortical and contractile strength.
 struct AblationInput {
   std::string region;
@@ -420,6 +428,7 @@ struct Scenario {
   std::map<std::string, HoldInput> holds;
   std::map<std::string, PressureInput> pressures;
   std::map<std::string, FoundationInput> foundations;
+  std::map<std::string, MatrixInput> matrices;
   std::map<std::string, DivisionInput> divisions;
   std::map<std::string, GrowthInput> growths;
   ExchangeInput exchange;

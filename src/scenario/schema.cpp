@@ -85,7 +85,8 @@ std::span<const InnerTables> inner_tables() {
        {"program", "stiffness_program"},
        "Piecewise linear activity, constant before the first and after the last time. Without it, activity is 1. It "
        "scales the tension of `[contraction.NAME]`, the active tension (`program`) and stiffness (`stiffness_program`) "
-       "of `[cortex.NAME]`, and the pressure of `[pressure.NAME]`."},
+       "of `[cortex.NAME]`, the pressure of `[pressure.NAME]`, and the stiffness of `[foundation.NAME]` and "
+       "`[matrix.NAME]`."},
       {"Trigger and follow",
        {"trigger", "follow"},
        "Cell-autonomous activity, by shape or `[signal.NAME]`. `trigger` starts both time courses of a cell at a "

@@ -234,7 +234,8 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("volume", "projection_weights", words::projection_weights);
   expect_words("contraction.*", "edges", words::edges);
   expect_words("cortex.*", "faces", words::edges);
-  for (const char* table : {"contraction.*", "cortex.*", "pressure.*", "foundation.*", "growth.*", "elasticity.*"}) {
+  for (const char* table :
+       {"contraction.*", "cortex.*", "pressure.*", "foundation.*", "matrix.*", "growth.*", "elasticity.*"}) {
     expect_words(table, "profile.shape", words::profile_shapes);
     expect_words(table, "profile.axis", words::profile_axes);
     expect_words(table, "variation.by", words::variation_bys);
@@ -252,6 +253,7 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("hold.*", "directions", words::axes);
   expect_words("pressure.*", "face", words::surfaces);
   expect_words("foundation.*", "faces", words::surfaces);
+  expect_words("matrix.*", "faces", words::surfaces);
   expect_words("growth.*", "axis", words::delay_axes);
   expect_words("ablation.*", "faces", words::edges);
   expect_words("division.*", "when", words::division_triggers);

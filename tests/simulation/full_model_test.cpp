@@ -72,6 +72,11 @@ resists = "normal"
 region = "all"
 stiffness_nN_per_um3 = 0.01
 resists = "one-sided"
+[matrix.base]
+region = "all"
+young_modulus_Pa = 20000
+thickness_um = 0.2
+relaxation_s = 1
 )";
   std::set<std::string> laws;
   for (const auto& [text, overrides] : std::vector<std::pair<std::string, std::vector<std::string>>>{
@@ -136,8 +141,8 @@ resists = "one-sided"
     }
   }
   EXPECT_EQ(laws, (std::set<std::string>{"contraction", "corner barrier", "cortex", "dilatation", "drag", "elasticity",
-                                         "enclosed volume", "foundation", "inertia", "pressure", "self-contact",
-                                         "shape memory", "ties"}));
+                                         "enclosed volume", "foundation", "inertia", "matrix", "pressure",
+                                         "self-contact", "shape memory", "ties"}));
 }
 
 // Of two runs to the same time, the columns that say where they are.
