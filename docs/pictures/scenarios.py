@@ -246,6 +246,24 @@ def convergent_extension():
     write(figure, "scenarios/convergent-extension.png", colours=64)
 
 
+def germ_band():
+    """An egg whose germ band narrows and lengthens, from the side and from below at four times; a stripe of it is marked."""
+    run = run_of("germ-band")
+    figure, axes = canvas(WIDTH, 340)
+    scale = 1.65
+    for row, (camera, name) in enumerate(((Camera(back=(0, -1, 0), up=(0, 0, 1)), "side"), (Camera(back=(0, 0, -1), up=(0, -1, 0)), "ventral"))):
+        for column, time in enumerate((0, 5, 12.5, run.frames[-1].time_min)):
+            frame = run.frames.at(time)
+            of_band, of_stripe = (of_cells(frame, f"region_{region}")[:, None] > 0 for region in ("germ-band", "stripe"))
+            colours = np.where(of_stripe, to_rgb(DAUGHTER), np.where(of_band, to_rgb("#8db8dc"), to_rgb("#eef0f2")))
+            centre = (126 + 249 * column, 225 - 110 * row)
+            outside(axes, frame, colours, camera, centre, scale, width=0.8)
+            if row == 0:
+                label(axes, (centre[0], 310), minutes(frame), size=LETTERS, weight="bold")
+    bar(axes, 30, 24, 50, scale)
+    write(figure, "scenarios/germ-band.png", colours=64)
+
+
 def division_demo():
     """A row of three cells, of which one divides, from the side."""
     run = run_of("division-demo")
@@ -301,6 +319,7 @@ PICTURES = {
     "wing-disc": wing_disc,
     "growing-disc": growing_disc,
     "convergent-extension": convergent_extension,
+    "germ-band": germ_band,
     "division-demo": division_demo,
     "ellipsoid": ellipsoid,
 }

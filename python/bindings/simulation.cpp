@@ -17,6 +17,7 @@
 #include "errors.hpp"
 #include "measure/cell_columns.hpp"
 #include "measure/cells.hpp"
+#include "measure/walls.hpp"
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/energy.hpp"
 #include "record/checkpoint.hpp"
@@ -142,6 +143,25 @@ nb::object neighbours(const Simulation& simulation) {
   return array_of(std::move(numbers), 2);
 }
 
+nb::dict walls(const Simulation& simulation) {
+  std::vector<int> cell, other;
+  std::vector<double> length_um, area_um2, tension;
+  for (const MeasuredWall& wall : measured_walls(simulation.model(), simulation.state())) {
+    cell.push_back(wall.cell.number());
+    other.push_back(wall.other ? wall.other->number() : -1);
+    length_um.push_back(wall.length_um);
+    area_um2.push_back(wall.area_um2);
+    tension.push_back(wall.tension);  // 1 nN/um = 1 mN/m
+  }
+  nb::dict result;
+  result["cell"] = array_of(std::move(cell));
+  result["other"] = array_of(std::move(other));
+  result["length_um"] = array_of(std::move(length_um));
+  result["area_um2"] = array_of(std::move(area_um2));
+  result["tension_mN_per_m"] = array_of(std::move(tension));
+  return result;
+}
+
 }  // namespace
 
 SimulationOf::Turn::Turn(SimulationOf& owner) : owner_(owner) {
@@ -202,6 +222,11 @@ bool SimulationOf::step(double until_s) {
 void SimulationOf::set_activity(const std::string& law, std::vector<double> activities) {
   const Turn turn(*this);
   simulation_->set_activity(law, std::move(activities));
+}
+
+void SimulationOf::set_wall_factors(const std::string& law, const std::vector<double>& factors) {
+  const Turn turn(*this);
+  simulation_->set_wall_factors(law, factors);
 }
 
 void SimulationOf::set_cell_array(const std::string& name, std::vector<double> values) {
@@ -267,6 +292,7 @@ void bind_simulation(nb::module_& module) {
       .def("copy", &S::copy)
       .def("step", &S::step, nb::arg("until_s"))
       .def("set_activity", &S::set_activity, nb::arg("law"), nb::arg("activities"))
+      .def("set_wall_factors", &S::set_wall_factors, nb::arg("law"), nb::arg("factors"))
       .def("set_cell_array", &S::set_cell_array, nb::arg("name"), nb::arg("values"))
       .def("set_signal", &S::set_signal, nb::arg("name"), nb::arg("values"))
       .def("save", &S::save)
@@ -313,6 +339,7 @@ void bind_simulation(nb::module_& module) {
       .def_prop_ro("signals", looks(concentrations))
       .def_prop_ro("regions", looks(regions))
       .def_prop_ro("neighbours", looks(neighbours))
+      .def_prop_ro("walls", looks(walls))
       .def_prop_ro("energies", looks(energies))
       .def_prop_ro("rest_positions",
                    of_tissue([](const Tissue& t) { return array_of(std::span<const Vec3>(t.rest_positions)); }))
@@ -335,6 +362,12 @@ void bind_simulation(nb::module_& module) {
           "activity",
           [](S& self, const std::string& law) {
             return self.with([&](const Simulation& s) { return activity(s, law); });
+          },
+          nb::arg("law"))
+      .def(
+          "wall_factors",
+          [](S& self, const std::string& law) {
+            return self.with([&](const Simulation& s) { return array_of(wall_factors(s.model(), s.state(), law)); });
           },
           nb::arg("law"))
       .def(

@@ -38,6 +38,7 @@ class SimulationOf {
   /// GaveUp.
   bool step(double until_s);
   void set_activity(const std::string& law, std::vector<double> activities);
+  void set_wall_factors(const std::string& law, const std::vector<double>& factors);
   void set_cell_array(const std::string& name, std::vector<double> values);
   void set_signal(const std::string& name, std::vector<double> values);
   [[nodiscard]] nb::bytes save();

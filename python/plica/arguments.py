@@ -175,9 +175,9 @@ def _refuse_masked(array: NDArray[Any], what: str) -> None:
         raise ValueError(f"{what}: {masked} values are masked; give a value for each, by values.filled(0) for instance")
 
 
-def per_cell(values: Any, count: int, what: str) -> NDArray[np.float64]:
-    """Return one number per cell, NaN where it is masked; a single number serves all."""
-    fits = f"one number per cell ({count})"
+def per_cell(values: Any, count: int, what: str, item: str = "cell") -> NDArray[np.float64]:
+    """Return one number per cell or other item, NaN where it is masked; a single number serves all."""
+    fits = f"one number per {item} ({count})"
     array = numbers(values, what, fits, masked_is_none=True)
     if array.ndim == 0:
         array = np.full(count, float(array))

@@ -323,6 +323,54 @@ class Simulation:
         """
         return self._core.activity(self._label(law))
 
+    def set_wall_factors(self, law: str, factors: Optional[ArrayLike]) -> None:
+        """Multiply the tension of single walls in a cortex of lateral faces.
+
+        Parameters
+        ----------
+        law : str
+            Name of a lateral cortex: alone if unambiguous ("lateral"), or with its table ("cortex.lateral").
+        factors : array_like of float, shape (walls,), or float, or None
+            Factor on the tension of each wall, 0 or more, in the order of `walls`. None: no factors.
+
+        Raises
+        ------
+        ValueError
+            If no lateral cortex has this name, the shape is wrong, a value is negative or not finite, or the embryo has mirror
+            planes.
+
+        Notes
+        -----
+        A factor belongs to a pair of cells, or to a cell and the rim, and multiplies `direction` and `noise`. It holds until
+        factors are set again, also in copies and saved simulations. Walls of daughters inherit it; cells that meet by an exchange
+        begin with 1, also if they were neighbours before. The order of `walls` then changes: read `wall_factors` again.
+
+        Examples
+        --------
+        >>> import numpy as np, plica
+        >>> sim = plica.Simulation({"embryo": {"shape": "sheet", "cell_count": 40},
+        ...                         "cortex": {"lateral": {"region": "all", "faces": "lateral", "tension_mN_per_m": 1}}})
+        >>> walls = sim.walls
+        >>> sim.set_wall_factors("lateral", np.where(walls["length_um"] < 3, 2.0, 1.0))
+        >>> float(sim.walls["tension_mN_per_m"].max())
+        2.0
+        """
+        label = self._label(law)
+        if factors is None:
+            return self._core.set_wall_factors(label, [])
+        values = per_cell(factors, len(self._core.wall_factors(label)), f"{label}: factors", "wall")
+        self._core.set_wall_factors(label, values.tolist())
+
+    def wall_factors(self, law: str) -> NDArray[np.float64]:
+        """Return the factors of `set_wall_factors`, shape (walls,); 1 where none is set.
+
+        Parameters
+        ----------
+        law : str
+            Name, as there.
+        """
+        return self._core.wall_factors(self._label(law))
+
     def _label(self, name: str) -> str:
         text_of(name, "law")
         labels = self._core.laws(active=True)
@@ -490,6 +538,29 @@ class Simulation:
     def neighbours(self) -> NDArray[np.int32]:
         """Pairs of cells that share a lateral face, as indices into `cell_data`, lower first; shape (pairs, 2)."""
         return self._core.neighbours
+
+    @property
+    def walls(self) -> NDArray[np.void]:
+        """Table of lateral faces, one row per pair of cells; a structured array of shape (walls,).
+
+        Its fields: `cell` and `other`, as indices into `cell_data`, lower first (`other` is -1 for all faces by which a cell
+        touches no other); `length_um`, mean of base and apex; `area_um2`; `tension_mN_per_m` of all lateral
+        cortices. Rows are in order of both cells. ``pandas.DataFrame(sim.walls)`` makes a table of it.
+
+        Examples
+        --------
+        >>> import plica
+        >>> walls = plica.Simulation({"embryo": {"shape": "sheet", "cell_count": 40}}).walls
+        >>> inner = walls[walls["other"] >= 0]
+        >>> inner.dtype.names
+        ('cell', 'other', 'length_um', 'area_um2', 'tension_mN_per_m')
+        """
+        columns = self._core.walls
+        table = np.empty(len(columns["cell"]), [(name, column.dtype) for name, column in columns.items()])
+        for name, column in columns.items():
+            table[name] = column
+        table.flags.writeable = False
+        return table
 
     @property
     def laws(self) -> list[str]:

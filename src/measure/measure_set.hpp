@@ -18,6 +18,7 @@ struct Subject {
   bool is_embryo = false;                        // has a ventral side (embryo.axes)
   bool projects = false;                         // volumes are projected
   std::optional<double> exchange_below_um = {};  // of [exchange], if any
+  std::string exchange_region = {};
 };
 
 inline bool always(const Subject&) { return true; }

@@ -24,15 +24,16 @@ struct AtVertex {
 };
 using Three = std::array<AtVertex, 3>;
 
-// Cells about the vertices where three meet.
-std::vector<Three> threes_of(const Sheet& sheet) {
+// Cells about the vertices where three of a set meet.
+std::vector<Three> threes_of(const Sheet& sheet, const CellSet& cells) {
   std::map<VertexId, std::vector<AtVertex>> about;
   for (std::size_t c = 0; c < sheet.cells.size(); ++c)
     for (const Stop& stop : sheet.cells[c].ring)
       about[sheet.original_of(stop.vertex)].push_back({CellId(c), stop.vertex});
   std::vector<Three> threes;
-  for (const auto& [vertex, cells] : about)
-    if (cells.size() == 3) threes.push_back({cells[0], cells[1], cells[2]});
+  for (const auto& [vertex, three] : about)
+    if (three.size() == 3 && std::ranges::all_of(three, [&](const AtVertex& at) { return cells[at.cell.index()]; }))
+      threes.push_back({three[0], three[1], three[2]});
   return threes;
 }
 
@@ -76,6 +77,7 @@ Mat2 sides_in(const std::array<Vec3, 2>& axes, const Triangle& triangle) {
 
 struct Kept {
   double below_um, shape_at_rest;
+  std::string region;
 };
 
 // Walls shorter than the rule says, and vertices that they join.
@@ -137,13 +139,19 @@ Column::OfStep count_of(std::size_t neighbours) {
 }
 
 double shear_of_shape(const ColumnInput& m) {
-  return shape_shear(m.model.tissue, m.state.positions) - m.of_set<Kept>().shape_at_rest;
+  const Kept& kept = m.of_set<Kept>();
+  return shape_shear(m.model.tissue, m.model.tissue.regions.at(kept.region), m.state.positions) - kept.shape_at_rest;
+}
+
+Kept kept_of(const Tissue& tissue, double below_um, const std::string& region) {
+  return {below_um, shape_shear(tissue, tissue.regions.at(region), tissue.rest_positions), region};
 }
 
 }  // namespace
 
-double shear_between(const Tissue& tissue, std::span<const Vec3> before, std::span<const Vec3> after) {
-  const std::vector<Three> threes = threes_of(tissue.sheet);
+double shear_between(const Tissue& tissue, const CellSet& cells, std::span<const Vec3> before,
+                     std::span<const Vec3> after) {
+  const std::vector<Three> threes = threes_of(tissue.sheet, cells);
   const std::vector<Triangle> from = triangles_of(tissue, threes, before), to = triangles_of(tissue, threes, after);
   double sum = 0, areas = 0;
   for (std::size_t t = 0; t < threes.size(); ++t) {
@@ -160,11 +168,11 @@ double shear_between(const Tissue& tissue, std::span<const Vec3> before, std::sp
   return areas > 0 ? sum / areas : 0;
 }
 
-double shape_shear(const Tissue& tissue, std::span<const Vec3> positions) {
+double shape_shear(const Tissue& tissue, const CellSet& cells, std::span<const Vec3> positions) {
   // The equilateral triangle becomes one of these by the matrix S, which has S S^T as second moments, up to a factor.
   const Mat2 equilateral = (Mat2() << 1, 0.5, 0, std::sqrt(0.75)).finished();
   Mat2 sum = Mat2::Zero();
-  for (const Triangle& triangle : triangles_of(tissue, threes_of(tissue.sheet), positions)) {
+  for (const Triangle& triangle : triangles_of(tissue, threes_of(tissue.sheet, cells), positions)) {
     const auto axes = axes_of(triangle);
     if (!axes) continue;
     const Mat2 S = sides_in(*axes, triangle) * equilateral.inverse();
@@ -181,9 +189,8 @@ MeasureSet neighbours_set() {
   return set_of(
       "neighbours", "`[exchange]`",
       [](const Subject& s) {
-        return s.exchange_below_um
-                   ? std::any(Kept{*s.exchange_below_um, shape_shear(s.model.tissue, s.model.tissue.rest_positions)})
-                   : std::any();
+        return s.exchange_below_um ? std::any(kept_of(s.model.tissue, *s.exchange_below_um, s.exchange_region))
+                                   : std::any();
       },
       {count({"exchanges", last, "Exchanges of neighbours so far, before those due at the end of the step.",
               [](const ColumnInput& m) { return m.state.exchanges.count; }}),
@@ -205,7 +212,8 @@ MeasureSet neighbours_set() {
        count({"cells_of_6_neighbours", last, "Cells with 6 neighbours, likewise.", count_of(6)}),
        count({"cells_of_7_neighbours", last, "Cells with 7 neighbours, likewise.", count_of(7)}),
        count({"cells_of_8_neighbours", last, "Cells with 8 neighbours or more, likewise.", count_of(8)}),
-       {"tissue_shear", last, "Shear of the tissue: half of (logarithmic strain along x − across it), mean of cells.",
+       {"tissue_shear", last,
+        "Shear of the cells of `exchange.region`: half of (logarithmic strain along x − across it), mean.",
         [](const ColumnInput& m) { return m.state.exchanges.shear; }},
        {"cell_shape_shear", last, "Part of it by which cells have become longer.", shear_of_shape},
        {"exchange_shear", last, "The rest of it, by exchange of neighbours.",

@@ -9,10 +9,11 @@
 
 namespace plica {
 
-/// Return the mean shear of the triangles between two positions of the same tissue.
-double shear_between(const Tissue& tissue, std::span<const Vec3> before, std::span<const Vec3> after);
+/// Return the mean shear of the triangles of some cells between two positions of the same tissue.
+double shear_between(const Tissue& tissue, const CellSet& cells, std::span<const Vec3> before,
+                     std::span<const Vec3> after);
 
 /// Return the shear that makes equilateral triangles as long as these are, by the mean of their second moments.
-double shape_shear(const Tissue& tissue, std::span<const Vec3> positions);
+double shape_shear(const Tissue& tissue, const CellSet& cells, std::span<const Vec3> positions);
 
 }  // namespace plica

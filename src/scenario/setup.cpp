@@ -312,8 +312,12 @@ void begin_sets(const Scenario& scenario, const Model& model, KeptBySet& kept, s
   // Places of a furrow do not follow cells that leave.
   FurrowSites sites;
   if (scenario.extrusions.empty()) sites = make_furrow_sites(scenario, model.tissue);
-  const Subject subject{model, std::move(sites), have_furrow(axes_of(scenario.embryo)),
-                        method_of(scenario.volume) == VolumeMethod::projection, scenario.exchange.below_um};
+  const Subject subject{model,
+                        std::move(sites),
+                        have_furrow(axes_of(scenario.embryo)),
+                        method_of(scenario.volume) == VolumeMethod::projection,
+                        scenario.exchange.below_um,
+                        scenario.exchange.region};
   const auto is_given = [&](std::string_view name) { return std::ranges::count(scenario.measure.sets, name) > 0; };
   for (const MeasureSet& set : measure_sets()) {
     const bool is_usual = is_given("automatic") && set.is_usual(subject);

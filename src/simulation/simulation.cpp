@@ -15,6 +15,7 @@
 #include "core/names.hpp"
 #include "measure/cell_columns.hpp"
 #include "measure/neighbours.hpp"
+#include "measure/walls.hpp"
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/energy.hpp"
@@ -179,6 +180,15 @@ void Simulation::set_activity(const std::string& label, std::vector<double> acti
   now_.equilibrium_time_s.reset();
 }
 
+void Simulation::set_wall_factors(const std::string& label, std::span<const double> factors) {
+  std::vector<double> internal = with_wall_factors(model(), state(), label, factors);
+  if (full_model_)
+    throw UsageError(label + ": walls of an embryo with mirror planes take no factors; remove embryo.mirror");
+  now_.state.internals[place_of_law(*model_, label)] = std::move(internal);
+  now_.at_equilibrium = false;
+  now_.equilibrium_time_s.reset();
+}
+
 void Simulation::set_signal(const std::string& name, CellArray values) {
   const std::vector<std::string> names = names_of(model_->signals.rules());
   const auto place = static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
@@ -333,7 +343,8 @@ bool Simulation::step(double until_s) {
   if (!report) return false;
 
   if (controls_.exchange)
-    now_.state.exchanges.shear += shear_between(solved().tissue, before.positions, now_.state.positions);
+    now_.state.exchanges.shear += shear_between(solved().tissue, solved().tissue.regions.at(controls_.exchange->region),
+                                                before.positions, now_.state.positions);
   const State& state = now_.state;
   const double speed = max_speed(state);
   const std::vector<PlannedDivision> due = due_divisions(solved(), state, controls_.divisions);

@@ -117,6 +117,11 @@ class Simulation {
   /// Throws UsageError for an unknown identifier, a wrong size or value, and asymmetric factors if one side is solved.
   void set_activity(const std::string& label, std::vector<double> activities);
 
+  /// Set factors on the tension of single walls in a lateral cortex; in the order of measured_walls, >= 0; empty: none.
+  /// They stay with their two cells, which daughters replace; cells that meet have 1. Throws UsageError as set_activity
+  /// does, and with mirror planes.
+  void set_wall_factors(const std::string& label, std::span<const double> factors);
+
   /// Replace the concentrations of a signal; cells. Throws UsageError as set_activity does.
   void set_signal(const std::string& name, CellArray values);
 

@@ -240,7 +240,8 @@ TEST(ExtrusionOfCells, LeavesItsPlaceToItsNeighbours) {
 // A homogeneous stretch is all by shape, and the sum of both parts is that of the tissue.
 TEST(Neighbours, ShearByShapeIsThatOfAHomogeneousStretch) {
   const Tissue tissue = tissue_from_prisms(honeycomb(6, 6, 4, 10), PolygonSplit::diagonals, 1);
-  const double before = shape_shear(tissue, tissue.rest_positions);
+  const CellSet& all = tissue.regions.at("all");
+  const double before = shape_shear(tissue, all, tissue.rest_positions);
   EXPECT_NEAR(before, 0, 1e-12);
   Vectors positions = tissue.rest_positions;
   double sum = 0;
@@ -248,11 +249,31 @@ TEST(Neighbours, ShearByShapeIsThatOfAHomogeneousStretch) {
   for (int step = 0; step < steps; ++step) {
     Vectors next = positions;
     for (Vec3& x : next) x = Vec3(x.x() * std::exp(0.3 / steps), x.y() * std::exp(-0.2 / steps), x.z());
-    sum += shear_between(tissue, positions, next);
+    sum += shear_between(tissue, all, positions, next);
     positions = next;
   }
   EXPECT_NEAR(sum, 0.25, 1e-6);
-  EXPECT_NEAR(shape_shear(tissue, positions), 0.25, 1e-9);
+  EXPECT_NEAR(shape_shear(tissue, all, positions), 0.25, 1e-9);
+}
+
+// Cells on the right are stretched, those on the left are not, and each set of cells has its own shear.
+TEST(Neighbours, ShearIsThatOfTheChosenCells) {
+  const Tissue tissue = tissue_from_prisms(honeycomb(8, 6, 4, 10), PolygonSplit::diagonals, 1);
+  Vectors after = tissue.rest_positions;
+  double middle = 0;
+  for (const Vec3& x : after) middle += x.x() / static_cast<double>(after.size());
+  for (Vec3& x : after) x.x() += 0.02 * std::max(0.0, x.x() - middle);
+  CellSet left, right;
+  for (const Cell& cell : tissue.cells) {
+    const auto [low, high] =
+        std::ranges::minmax(cell.corners, {}, [&](NodeId node) { return tissue.rest_positions[node.index()].x(); });
+    left.push_back(tissue.rest_positions[high.index()].x() < middle);
+    right.push_back(tissue.rest_positions[low.index()].x() > middle);
+  }
+  EXPECT_NEAR(shear_between(tissue, left, tissue.rest_positions, after), 0, 1e-12);
+  EXPECT_NEAR(shear_between(tissue, right, tissue.rest_positions, after), 0.5 * 0.02 / 1.01, 1e-12);
+  EXPECT_NEAR(shape_shear(tissue, left, after), 0, 1e-12);
+  EXPECT_NEAR(shape_shear(tissue, right, after), 0.5 * std::log(1.02), 1e-9);
 }
 
 const std::string extension = R"(format = 1

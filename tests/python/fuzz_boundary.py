@@ -40,6 +40,10 @@ x_um = [-30, 0]
 [contraction.apical]
 region = "left"
 tension_mN_per_m = 0.5
+[cortex.walls]
+region = "left"
+faces = "lateral"
+tension_mN_per_m = 0.2
 [dynamics]
 surface_drag_Pa_s_per_um = 20
 [time]
@@ -149,6 +153,8 @@ class Fuzzer:
             lambda: self.record(simulation, few),
             lambda: simulation.set_activity(self.or_odd(self.law), self.or_odd(self.activity)),
             lambda: simulation.activity(self.or_odd(self.law)),
+            lambda: simulation.set_wall_factors(self.or_odd(lambda: "walls"), self.or_odd(lambda: simulation.walls["length_um"])),
+            lambda: simulation.wall_factors(self.or_odd(lambda: "walls")),
             lambda: simulation.forces(self.or_odd(self.law)),
             lambda: simulation.save(self.or_odd(self.new_path)),
             lambda: self.keep(plica.load(self.or_odd(lambda: self.saved), threads=self.or_odd(lambda: 1))),

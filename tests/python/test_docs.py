@@ -52,6 +52,15 @@ def test_signals_page(tmp_path, monkeypatch):
     assert sim.time_s == 240 and sim.signals["dpp"][kept].mean() > 1.05 * sim.signals["dpp"][~kept].mean()
 
 
+def test_exchange_page(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    page = (ROOT / "docs/how-to/exchange.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"^```toml\n# exchange.toml\n(.*?)^```", page, re.M | re.S)
+    (tmp_path / "exchange.toml").write_text(text)
+    names = run_blocks("docs/how-to/exchange.md")
+    assert set(names["factors"]) == {1.0, 1.5} and set(names["sim"].wall_factors("lateral")) == {1.0, 1.5}
+
+
 def test_gallery(tmp_path, monkeypatch):
     """The rule of the gallery makes a wave of contraction from pole to pole."""
     monkeypatch.chdir(tmp_path)

@@ -360,6 +360,40 @@ def test_signals_are_read_and_written():
         del sim.signals["u"]
 
 
+def test_walls_are_read_and_their_factors_written(tmp_path):
+    pandas = pytest.importorskip("pandas")
+    sim = plica.Simulation({"embryo": {"shape": "sheet", "length_um": 30, "width_um": 30, "cell_height_um": 10, "cell_count": 20},
+                            "dynamics": {"surface_drag_Pa_s_per_um": 30}, "time": {"end_min": 0.5}, "stop": {"at_equilibrium": False},
+                            "cortex": {"a": {"region": "all", "tension_mN_per_m": 1},
+                                       "walls": {"region": "all", "faces": "lateral", "tension_mN_per_m": 0.5}}})
+    walls = sim.walls
+    between = walls[walls["other"] >= 0]
+    assert np.array_equal(np.column_stack([between["cell"], between["other"]]), sim.neighbours)
+    assert len(np.unique(walls[["cell", "other"]])) == len(walls) and (walls["cell"] < 20).all() and (walls["other"] == -1).any()
+    assert np.allclose(between["area_um2"], 10 * between["length_um"]) and np.allclose(walls["tension_mN_per_m"], 0.5)
+    assert list(pandas.DataFrame(walls)) == list(walls.dtype.names) and not walls.flags.writeable
+    assert (sim.wall_factors("walls") == 1).all()
+
+    weak = np.where(walls["length_um"] < np.median(walls["length_um"]), 0.5, 2.0)
+    sim.set_wall_factors("cortex.walls", weak)
+    assert (sim.wall_factors("walls") == weak).all() and np.allclose(sim.walls["tension_mN_per_m"], 0.5 * weak)
+    sim.step()
+    sim.save(tmp_path / "saved.h5")
+    forks = [sim.copy(), pickle.loads(pickle.dumps(sim)), plica.load(tmp_path / "saved.h5")]
+    plain = sim.copy()
+    plain.set_wall_factors("walls", None)
+    for one in (sim, plain, *forks):
+        one.run()
+    assert all((one.positions == sim.positions).all() and (one.wall_factors("walls") == weak).all() for one in forks)
+    assert abs(plain.positions - sim.positions).max() > 0.01 and (plain.wall_factors("walls") == 1).all()
+    sim.set_wall_factors("walls", 3)
+    assert (sim.wall_factors("walls") == 3).all()
+    for law, factors, text in (("a", 1, "cortex.a"), ("apical", 1, "cortex.walls"), ("walls", [1, 2], "one number per wall"),
+                               ("walls", -1, "give a number >= 0"), ("walls", np.nan, "is nan"), ("walls", "x", "one number per wall")):
+        with pytest.raises(ValueError, match=text):
+            sim.set_wall_factors(law, factors)
+
+
 def test_arrays_of_ones_own_are_kept(sim, tmp_path):
     signal = np.random.default_rng(1).random(756)
     sim.cell_data["signal"] = signal

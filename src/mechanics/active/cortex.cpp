@@ -148,8 +148,7 @@ void Cortex::take_factors(const Step& step) const {
 
 Cortex::Response Cortex::active(std::size_t f, double area, const Step& step, bool with_energy) const {
   const double acting = activity_of_face(f, step);
-  const double factor = rule_.walls.is_used() ? factors_.of_face[f] : 1;
-  const double gamma = factor * acting * rule_.tension, saturation = rule_.saturation * rest_areas_[f];
+  const double gamma = factor_of(f, step) * acting * rule_.tension, saturation = rule_.saturation * rest_areas_[f];
   if (saturation <= 0) return {gamma * area, gamma, 0};
   return {with_energy ? gamma * (area - saturation * std::log1p(area / saturation)) : 0,
           gamma * area / (area + saturation), gamma * saturation / ((area + saturation) * (area + saturation))};
@@ -279,7 +278,8 @@ Cortex::Memory Cortex::memory(std::span<const double> internal) const {
   };
   const auto areas = take(flows(), faces_.size()), areas_before = take(flows(), faces_.size());
   const auto activation = take(activation_.is_used(), pattern_.cells.size());
-  return {areas, areas_before, activation, GivenActivities(internal)};
+  const auto factors = take(internal.size() > pattern_.cells.size(), internal.size() - pattern_.cells.size());
+  return {areas, areas_before, activation, factors, GivenActivities(internal)};
 }
 
 std::vector<double> Cortex::first_internal(const Tissue& tissue) const {
@@ -299,7 +299,7 @@ std::vector<double> Cortex::next_internal(const Step& step) const {
     internal = joined(std::move(internal), before.areas);
   }
   if (activation_.is_used()) internal = joined(std::move(internal), activation_.after(step, before.activation));
-  return joined(std::move(internal), before.given.internal());
+  return joined(joined(std::move(internal), before.factors), before.given.internal());
 }
 
 std::vector<double> Cortex::with_signals(std::span<const double> internal, std::span<const CellArray> signals,
@@ -471,8 +471,8 @@ std::vector<double> Cortex::internal_after_division(std::span<const double> inte
                                                     const TissueChange& change,
                                                     const ChangePositions& positions) const {
   const Memory before = memory(internal);
-  std::vector<double> after;
-  if (flows()) {
+  std::vector<double> after, factors;
+  if (flows() || !before.factors.empty()) {
     const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(change));
     const Origins origins(*this, change);
     const auto all = origins.of(faces);
@@ -481,13 +481,15 @@ std::vector<double> Cortex::internal_after_division(std::span<const double> inte
       now[f] = facet_area(gather(positions.after, faces[f].nodes));
     const std::vector<double> first = origins.first_areas(faces, now, all);
     for (const std::span<const double> areas : {before.areas, before.areas_before})
-      for (std::size_t f = 0; f < faces.size(); ++f)
+      for (std::size_t f = 0; f < faces.size() && flows(); ++f)
         after.push_back(all[f].empty() ? now[f] / first[f] : origins.mean(all[f], areas));
+    for (std::size_t f = 0; f < faces.size() && !before.factors.empty(); ++f)
+      factors.push_back(all[f].empty() ? 1 : origins.mean(all[f], before.factors));
   }
   if (activation_.is_used())
     after =
         joined(std::move(after), inherited(change, std::vector(before.activation.begin(), before.activation.end())));
-  return joined(std::move(after), before.given.after_division(change));
+  return joined(joined(std::move(after), factors), before.given.after_division(change));
 }
 
 std::vector<double> Cortex::program_points_s() const {

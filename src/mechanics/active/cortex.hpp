@@ -45,7 +45,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
 
   /// Return, if areas relax, stress-free / reference areas at the beginning of this step and of the previous one; then
-  /// cell states, if used; then overridden activities, if any.
+  /// cell states, if used; then, if set from outside, factors of lateral faces; then overridden activities, if any.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
 
@@ -72,10 +72,17 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] bool is_active() const override { return rule_.tension != 0; }
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
                                                   std::span<const double> internal) const override;
+  [[nodiscard]] bool accepts(std::span<const double> internal, const Tissue& tissue) const override;
   /// Override the activity of the tension; stiffness keeps its program.
   [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
-                                                    std::span<const double> activities) const override {
-    return memory(internal).given.put(internal, activities);
+                                                    std::span<const double> activities) const override;
+  /// Return the internal state with factors on the tension of faces, set from outside; empty: none. A face keeps its
+  /// factor as long as its two cells, or their daughters, share it; a face between cells that meet has 1.
+  [[nodiscard]] std::vector<double> with_face_factors(std::span<const double> internal,
+                                                      std::span<const double> factors) const;
+  /// Return them; empty: none.
+  [[nodiscard]] std::span<const double> face_factors(std::span<const double> internal) const {
+    return memory(internal).factors;
   }
   [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
                                                  double time_s) const override;
@@ -96,6 +103,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   /// Return the law whose cells start at the interpolated crossing of their threshold.
   [[nodiscard]] std::unique_ptr<Law> smooth() const override;
 
+  [[nodiscard]] CellSide side() const { return rule_.side; }
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
   /// Areas (um^2) and tensions (nN/um) of the faces at the end of a step.
@@ -117,6 +125,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] double stiffening_of(std::size_t face, const Step& step) const;
   [[nodiscard]] double activity_of_face(std::size_t face, const Step& step) const;
   void take_factors(const Step& step) const;
+  [[nodiscard]] double factor_of(std::size_t face, const Step& step) const;
   struct FaceTensions {                    // all faces at the end of a step
     std::vector<double> tensions, slopes;  // faces, filled up to whole batches
     Vectors positions;                     // what they depend on
@@ -153,6 +162,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   struct Memory {
     std::span<const double> areas, areas_before;  // faces; stress-free / reference, at the beginning of both steps
     std::span<const double> activation;           // cells; ShapeActivation
+    std::span<const double> factors;              // faces; empty: none set. Activities are given then, too
     GivenActivities given;
   };
   [[nodiscard]] Memory memory(std::span<const double> internal) const;
