@@ -131,10 +131,11 @@ TissueChange turn(Model& model, State& state, std::vector<WallTurn>& turns, doub
 std::optional<ExchangeOutcome> exchange_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
                                                    double length_um) {
   if (turns.empty()) return std::nullopt;
-  Model present(model);
-  settle_growth(present, state);
+  const std::optional<Model> now = grown(model, model, state.internals, state.time_s);
+  const Model& present = now ? *now : model;
   while (!turns.empty()) {
-    Model turned(present);
+    Model turned(model);
+    settle_growth(turned, state);
     State then = state;
     TissueChange change = turn(turned, then, turns, length_um);
     const Vectors forces = forces_of(turned, then);

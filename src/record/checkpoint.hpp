@@ -17,7 +17,7 @@
 namespace plica {
 
 /// Version of the content; checkpoints of another version are refused.
-inline constexpr int checkpoint_format = 13;
+inline constexpr int checkpoint_format = 14;
 
 /// Files written before the checkpoint.
 struct RecordMemory {

@@ -59,19 +59,18 @@ std::vector<WallTurn> due_exchanges(const Model& model, const State& state, cons
 }
 
 std::optional<ExchangeOutcome> make_exchanges(Model& model, State& state, const ExchangeRule& rule) {
-  Exchanges& exchanges = state.exchanges;
-  exchanges.until_s = state.time_s;
-  std::erase_if(exchanges.recent,
+  state.exchanges.until_s = state.time_s;
+  std::erase_if(state.exchanges.recent,
                 [&](const Exchanges::Turned& one) { return has_come(one.time_s + rule.again_after_s, state.time_s); });
-  std::optional<ExchangeOutcome> outcome =
-      exchange_neighbours(model, state, due_exchanges(model, state, rule), rule.new_length_um);
+  const std::vector<WallTurn> due = due_exchanges(model, state, rule);
+  std::optional<ExchangeOutcome> outcome = exchange_neighbours(model, state, due, rule.new_length_um);
+  const Sheet& sheet = model.tissue.sheet;
+  for (const WallTurn& turn : due)
+    state.exchanges.recent.push_back(
+        {column(sheet, turn.begin).front(), column(sheet, turn.end).front(), state.time_s});
   if (!outcome) return std::nullopt;
   state.exchanges.count += static_cast<int>(outcome->turns.size());
   state.exchanges.energy += outcome->energy;
-  const Sheet& sheet = model.tissue.sheet;
-  for (const WallTurn& turn : outcome->turns)
-    state.exchanges.recent.push_back(
-        {column(sheet, turn.begin).front(), column(sheet, turn.end).front(), state.time_s});
   return outcome;
 }
 

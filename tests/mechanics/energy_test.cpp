@@ -155,6 +155,41 @@ TEST(EnergyFlow, OfContactLosesWhatPairsLeaveBehind) {
               1e-9 * flow.stored);
 }
 
+// Cells act by the signal at the beginning of a step: what balances both ends of a step is counted, not what acts in
+// it.
+TEST(EnergyBalance, OfCellsThatFollowASignalHasNoLag) {
+  const std::string text = R"(format = 1
+[embryo]
+shape = "sheet"
+length_um = 20
+width_um = 20
+cell_count = 16
+cell_height_um = 10
+[elasticity]
+young_modulus_Pa = 1000
+[dynamics]
+surface_drag_Pa_s_per_um = 140
+[signal.u]
+source = { region = "all", per_min = 1 }
+[cortex.apical]
+region = "all"
+tension_mN_per_m = 2
+follow = { signal = "u", from = 0, to = 1 }
+[time]
+end_min = 1
+max_step_s = 4
+tolerance_um = 1
+[stop]
+at_equilibrium = false
+)";
+  Simulation simulation(scenario_of(text));
+  ASSERT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
+  const double ratio = *simulation.measures()["energy_imbalance_ratio"];
+  std::printf("cells that follow a signal: imbalance %.2e in %d steps\n", ratio, simulation.steps());
+  EXPECT_LT(simulation.steps(), 30);
+  EXPECT_LE(std::abs(ratio), 0.01);
+}
+
 // A whole run says the same of itself, law by law.
 TEST(EnergyBalance, OfARunIsTheSumOfItsLaws) {
   Simulation simulation(load_scenario(pulled_block("[cortex.skin]\nregion = \"all\"\nstiffness_mN_per_m = 1\n")));

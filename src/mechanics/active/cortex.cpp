@@ -16,6 +16,24 @@ double area_at_rest(const Tissue& tissue, const Face& face) {
   return facet_area(corners);
 }
 
+// Unit normal of a face in the rest shape of its cell: reference positions mean nothing after an exchange of
+// neighbours. By reference positions where the face is a part of one of the cell's elements.
+Vec3 rest_normal(const Tissue& tissue, const Face& face) {
+  const Cell& cell = tissue.cells[face.cell.index()];
+  for (int i = 0; i < cell.element_count; ++i) {
+    const std::size_t e = cell.first_element.index() + static_cast<std::size_t>(i);
+    const auto& nodes = tissue.elements[e];
+    std::array<std::ptrdiff_t, 4> places;
+    std::ranges::transform(face.nodes, places.begin(),
+                           [&](NodeId node) { return std::ranges::find(nodes, node) - nodes.begin(); });
+    if (std::ranges::count(places, std::ssize(nodes)) > 0) continue;
+    std::array<Vec3, 4> corners;
+    for (int k = 0; k < 4; ++k) corners[k] = tissue.element_rest_shape[e][static_cast<std::size_t>(places[k])];
+    return facet_area_vector(corners).normalized();
+  }
+  return facet_area_vector(gather(tissue.rest_positions, face.nodes)).normalized();
+}
+
 // Strength of a face: that of its cell, or the mean of both cells of a wall; times the share of the face in this
 // tissue.
 double strength_of(const Face& face, const CellPattern& pattern) {
@@ -23,22 +41,11 @@ double strength_of(const Face& face, const CellPattern& pattern) {
   return face.share * (face.beyond ? 0.5 * (own + pattern.strengths[face.beyond->index()]) : own);
 }
 
-std::vector<Face> acting_faces(const Tissue& tissue, CellSide side, const CellPattern& pattern) {
-  std::vector<Face> faces = faces_of(tissue, side);
-  std::erase_if(faces, [&](const Face& face) { return strength_of(face, pattern) == 0; });
-  return faces;
-}
-
 // Chunks of faces, each as an element that lists the corners of the face twice.
 ElementChunks chunks_of(const Tissue& tissue, const std::vector<std::array<NodeId, 4>>& faces) {
   std::vector<std::array<NodeId, 8>> corners;
   for (const auto& n : faces) corners.push_back({n[0], n[1], n[2], n[3], n[0], n[1], n[2], n[3]});
   return {tissue, corners};
-}
-
-// Key of the cells of a face, independent of their order.
-std::pair<int, int> cells_of(CellId cell, std::optional<CellId> beyond) {
-  return std::minmax(cell.number(), beyond ? beyond->number() : -1);
 }
 
 std::vector<double> joined(std::vector<double> a, std::span<const double> b) {
@@ -55,15 +62,23 @@ double integral_of_yielding(double w, double q) {
 
 }  // namespace
 
+std::vector<Face> Cortex::acting_faces(const Tissue& tissue, CellSide side, const CellPattern& pattern) {
+  std::vector<Face> faces = faces_of(tissue, side);
+  std::erase_if(faces, [&](const Face& face) { return strength_of(face, pattern) == 0; });
+  return faces;
+}
+
 Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kernels kernels)
     : BatchLaw({}, {tissue, {}}, kernels),
       rule_(std::move(rule)),
       pattern_(std::move(pattern)),
       faces_(acting_faces(tissue, rule_.side, pattern_)),
-      activation_(tissue, rule_.activation) {
+      activation_(tissue, rule_.activation),
+      noise_(rule_.walls.noise) {
   for (const Face& face : faces_) {
     elements_.push_back(face.nodes);
     rest_areas_.push_back(area_at_rest(tissue, face));
+    rest_normals_.push_back(rest_normal(tissue, face));
     strengths_.push_back(strength_of(face, pattern_));
   }
   if (rule_.walls.noise.spread > 0) pairs_ = pair_numbers(tissue, faces_);
@@ -140,10 +155,24 @@ void Cortex::take_factors(const Step& step) const {
   if (factors_.time_s == step.end_time_s && std::ranges::equal(factors_.positions, positions)) return;
   kept_ = {};
   factors_ = {{positions.begin(), positions.end()}, step.end_time_s, std::vector<double>(faces_.size(), 1)};
+  if (noise.spread > 0) noise_.go_to(step.end_time_s, pairs_);
   chunks_.for_elements([&](std::size_t f) {
     if (direction) factors_.of_face[f] *= direction_factor(*direction, gather(positions, faces_[f].nodes));
-    if (noise.spread > 0) factors_.of_face[f] *= noise_factor(noise, pairs_[f], step.end_time_s);
+    if (noise.spread > 0) factors_.of_face[f] *= noise_.factor(pairs_[f]);
   });
+}
+
+// Let `active` read the mean of the factors at both ends of a step, whose forces do its work.
+void Cortex::take_mean_factors(const CompletedStep& completed) const {
+  if (!rule_.walls.is_used()) return;
+  std::vector<double> mean(faces_.size(), 0);
+  Step at = completed.motion;
+  for (const double time_s : {completed.end.end_time_s, completed.begin.end_time_s}) {
+    at.end_time_s = time_s;
+    take_factors(at);
+    for (std::size_t f = 0; f < mean.size(); ++f) mean[f] += 0.5 * factors_.of_face[f];
+  }
+  factors_ = {{}, -1, std::move(mean)};
 }
 
 Cortex::Response Cortex::active(std::size_t f, double area, const Step& step, bool with_energy) const {
@@ -182,15 +211,28 @@ Cortex::Response Cortex::respond(std::size_t f, double area, const Step& step, b
   return sum;
 }
 
+// The state of a law whose cells follow a state: the mean of the activities that balanced the beginning and the end of
+// a step, since cells act by what they were at the beginning of a step.
+std::vector<double> Cortex::acting_midway(std::span<const double> internal) const {
+  std::vector<double> midway(internal.begin(), internal.end());
+  const Memory remembered = memory(internal);
+  const auto first = remembered.activation.data() - internal.data();
+  for (std::size_t c = 0; c < remembered.activation_before.size(); ++c)
+    midway[first + c] = 0.5 * (remembered.activation[c] + remembered.activation_before[c]);
+  return midway;
+}
+
 EnergyFlow Cortex::energy_flow(const CompletedStep& completed) const {
-  take_factors(completed.motion);
+  const std::vector<double> internal = acting_midway(completed.motion.internal);
+  Step motion = completed.motion;
+  motion.internal = internal;
+  take_mean_factors(completed);
   const std::vector<double> before = areas(completed.begin.positions), after = areas(completed.end.positions);
   std::vector<EnergyFlow> flows_of(faces_.size());
   chunks_.for_elements([&](std::size_t f) {
     EnergyFlow& flow = flows_of[f];
     if (rule_.tension != 0)
-      flow.active =
-          active(f, before[f], completed.motion, true).energy - active(f, after[f], completed.motion, true).energy;
+      flow.active = active(f, before[f], motion, true).energy - active(f, after[f], motion, true).energy;
     if (rule_.stiffness != 0) {
       // Responses to unit programs, at areas and rest areas before and after. A rising program supplies energy; a
       // falling one dissipates what it releases. Where the rest area relaxes, so does the work of the tension minus the
@@ -278,14 +320,17 @@ Cortex::Memory Cortex::memory(std::span<const double> internal) const {
   };
   const auto areas = take(flows(), faces_.size()), areas_before = take(flows(), faces_.size());
   const auto activation = take(activation_.is_used(), pattern_.cells.size());
+  const auto activation_before = take(follows(), pattern_.cells.size());
   const auto factors = take(internal.size() > pattern_.cells.size(), internal.size() - pattern_.cells.size());
-  return {areas, areas_before, activation, factors, GivenActivities(internal)};
+  return {areas, areas_before, activation, activation_before, factors, GivenActivities(internal)};
 }
 
 std::vector<double> Cortex::first_internal(const Tissue& tissue) const {
   std::vector<double> internal;
   if (flows()) internal.assign(2 * faces_.size(), 1);
-  return joined(std::move(internal), activation_.internal(tissue.rest_positions, 0, {}));
+  const std::vector<double> activation = activation_.internal(tissue.rest_positions, 0, {});
+  internal = joined(std::move(internal), activation);
+  return follows() ? joined(std::move(internal), activation) : internal;
 }
 
 std::vector<double> Cortex::next_internal(const Step& step) const {
@@ -299,6 +344,7 @@ std::vector<double> Cortex::next_internal(const Step& step) const {
     internal = joined(std::move(internal), before.areas);
   }
   if (activation_.is_used()) internal = joined(std::move(internal), activation_.after(step, before.activation));
+  if (follows()) internal = joined(std::move(internal), before.activation);
   return joined(joined(std::move(internal), before.factors), before.given.internal());
 }
 
@@ -312,184 +358,12 @@ std::vector<double> Cortex::with_signals(std::span<const double> internal, std::
   return result;
 }
 
-// Origin of a face: the earlier face with the same nodes, else all between the same cells; none between daughters, or
-// cells that have met.
-class Cortex::Origins {
- public:
-  Origins(const Cortex& before, const TissueChange& change) : before_(before), change_(change) {
-    for (std::size_t f = 0; f < before.faces_.size(); ++f) {
-      const Face& face = before.faces_[f];
-      by_nodes_[sorted(face.nodes)] = f;
-      by_cells_[cells_of(face.cell, face.beyond)].push_back(f);
-    }
-  }
-
-  [[nodiscard]] std::vector<std::vector<std::size_t>> of(std::span<const Face> faces) const {
-    std::vector<std::vector<std::size_t>> origins;
-    std::map<CellId, std::size_t> ordinals;
-    for (const Face& face : faces) origins.push_back(of(face, ordinals[face.cell]++));
-    return origins;
-  }
-
-  /// Reference areas that do not follow from areas in the undeformed tissue, given present ones and origins: of faces
-  /// without origin, and of all where cells are remeshed, which share that of their origins. 0: it follows from them.
-  [[nodiscard]] std::vector<double> first_areas(std::span<const Face> faces, std::span<const double> now,
-                                                const std::vector<std::vector<std::size_t>>& origins) const {
-    std::map<std::vector<std::size_t>, double> wholes;
-    for (std::size_t f = 0; f < faces.size(); ++f) wholes[origins[f]] += now[f];
-    std::vector<double> first(faces.size(), 0.0);
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-      if (origins[f].empty()) first[f] = change_.remeshed.empty() ? now[f] : mean_about(faces[f]).value_or(now[f]);
-      if (change_.remeshed.empty()) continue;
-      for (const std::size_t from : origins[f]) first[f] += before_.rest_areas_[from] * (now[f] / wholes[origins[f]]);
-    }
-    return first;
-  }
-
-  /// Mean of values of these faces, weighted by their reference areas.
-  [[nodiscard]] double mean(std::span<const std::size_t> faces, std::span<const double> values) const {
-    double sum = 0, area = 0;
-    for (const std::size_t f : faces) sum += before_.rest_areas_[f] * values[f], area += before_.rest_areas_[f];
-    return sum / area;
-  }
-
- private:
-  // `ordinal`: among the faces of its cell.
-  [[nodiscard]] std::vector<std::size_t> of(const Face& face, std::size_t ordinal) const {
-    const auto origin = [&](CellId cell) { return change_.origin[cell.index()]; };
-    const auto cells = cells_of(origin(face.cell), face.beyond ? std::optional(origin(*face.beyond)) : std::nullopt);
-    const auto found = by_cells_.find(cells);
-    if (!change_.remeshed.empty() && before_.rule_.side != CellSide::lateral)
-      return change_.is_remeshed(face.cell) ? found->second : std::vector{found->second[ordinal]};
-    // Hanging nodes are numbered again when cells change; a wall that turns keeps its nodes.
-    std::array<NodeId, 4> nodes = sorted(face.nodes);
-    const bool are_known =
-        (change_.daughters.empty() && change_.remeshed.empty()) || nodes.back().index() < change_.kept_nodes();
-    for (NodeId& node : nodes)
-      if (node.index() < change_.kept_nodes()) node = change_.node_origin[node.index()];
-    const auto is_between = [&](const Face& other) { return cells_of(other.cell, other.beyond) == cells; };
-    if (const auto same = by_nodes_.find(nodes); are_known && same != by_nodes_.end())
-      if (change_.remeshed.empty() || is_between(before_.faces_[same->second])) return {same->second};
-    return found == by_cells_.end() ? std::vector<std::size_t>() : found->second;
-  }
-
-  // Mean reference area of the former faces of both cells.
-  [[nodiscard]] std::optional<double> mean_about(const Face& face) const {
-    double sum = 0;
-    int count = 0;
-    for (std::size_t f = 0; f < before_.faces_.size(); ++f)
-      for (const CellId cell : {face.cell, face.beyond.value_or(face.cell)}) {
-        if (before_.faces_[f].cell != cell && before_.faces_[f].beyond != cell) continue;
-        sum += before_.rest_areas_[f];
-        ++count;
-      }
-    return count > 0 ? std::optional(sum / count) : std::nullopt;
-  }
-
-  static std::array<NodeId, 4> sorted(std::array<NodeId, 4> nodes) {
-    std::ranges::sort(nodes);
-    return nodes;
-  }
-
-  const Cortex& before_;
-  const TissueChange& change_;
-  std::map<std::array<NodeId, 4>, std::size_t> by_nodes_;
-  std::map<std::pair<int, int>, std::vector<std::size_t>> by_cells_;
-};
-
-void Cortex::inherit_faces(const Origins& origins, const Cortex& before, std::span<const Vec3> positions) {
-  const std::vector<double> now = areas(positions);
-  const auto all = origins.of(faces_);
-  const std::vector<double> first = origins.first_areas(faces_, now, all);
-  std::vector<double> stretches;
-  const std::vector<double> stretches_before = before.past();
-  for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const std::vector<std::size_t>& from = all[f];
-    stretches.push_back(first[f] > 0 ? first[f] / rest_areas_[f] : origins.mean(from, stretches_before));
-    // In a part of a tissue, the neighbour that is left out keeps its half of a wall.
-    if (from.empty() || faces_[f].beyond || !before.faces_[from.front()].beyond) continue;
-    faces_[f].share *= 0.5;
-    strengths_[f] *= 0.5;
-  }
-  take_stretches(std::move(stretches));
-}
-
-void Cortex::take_stretches(std::vector<double> stretches) {
-  stretches_ = std::move(stretches);
-  for (std::size_t f = 0; f < faces_.size(); ++f) rest_areas_[f] *= stretches_[f];
-  ungrown_areas_ = rest_areas_;
-  take_rest_areas();
-}
-
 std::unique_ptr<Law> Cortex::with_strengths(std::span<const double> factors) const {
   auto law = std::make_unique<Cortex>(*this);
   for (std::size_t c = 0; c < factors.size(); ++c) law->pattern_.strengths[c] *= factors[c];
   for (std::size_t f = 0; f < faces_.size(); ++f) law->strengths_[f] = strength_of(faces_[f], law->pattern_);
   law->kept_ = {};
   return law;
-}
-
-std::vector<double> Cortex::past() const {
-  std::vector<double> stretches = stretches_;
-  for (std::size_t f = 0; f < faces_.size(); ++f) stretches[f] *= rest_areas_[f] / ungrown_areas_[f];
-  return stretches;
-}
-
-std::unique_ptr<Law> Cortex::grown(const Tissue& tissue, std::span<const ElementId> /*elements*/,
-                                   std::span<const GrowthTensor> tensors) const {
-  auto law = std::make_unique<Cortex>(*this);
-  if (tensors.empty()) return law;
-  for (std::size_t f = 0; f < faces_.size(); ++f) {
-    const Face& face = faces_[f];
-    const Vec3 normal = facet_area_vector(gather(tissue.rest_positions, face.nodes)).normalized();
-    const double own = tensors[face.cell.index()].area(normal);
-    law->rest_areas_[f] =
-        ungrown_areas_[f] * (face.beyond ? 0.5 * (own + tensors[face.beyond->index()].area(normal)) : own);
-  }
-  law->take_rest_areas();
-  law->activation_ = ShapeActivation(tissue, rule_.activation);
-  law->kept_ = {};
-  return law;
-}
-
-std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const TissueChange& change,
-                                            std::span<const Vec3> positions) const {
-  auto after = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_, kernels_);
-  after->inherit_faces(Origins(*this, change), *this, positions);
-  return after;
-}
-
-std::unique_ptr<Law> Cortex::restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
-                                      std::span<const double> past) const {
-  auto law = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_, kernels_);
-  if (past.size() != law->faces_.size()) throw InvalidNumbers();
-  law->take_stretches({past.begin(), past.end()});
-  return law;
-}
-
-std::vector<double> Cortex::internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                    const TissueChange& change,
-                                                    const ChangePositions& positions) const {
-  const Memory before = memory(internal);
-  std::vector<double> after, factors;
-  if (flows() || !before.factors.empty()) {
-    const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(change));
-    const Origins origins(*this, change);
-    const auto all = origins.of(faces);
-    std::vector<double> now(faces.size(), 1);
-    for (std::size_t f = 0; f < faces.size() && !positions.after.empty(); ++f)
-      now[f] = facet_area(gather(positions.after, faces[f].nodes));
-    const std::vector<double> first = origins.first_areas(faces, now, all);
-    for (const std::span<const double> areas : {before.areas, before.areas_before})
-      for (std::size_t f = 0; f < faces.size() && flows(); ++f)
-        after.push_back(all[f].empty() ? now[f] / first[f] : origins.mean(all[f], areas));
-    for (std::size_t f = 0; f < faces.size() && !before.factors.empty(); ++f)
-      factors.push_back(all[f].empty() ? 1 : origins.mean(all[f], before.factors));
-  }
-  if (activation_.is_used())
-    after =
-        joined(std::move(after), inherited(change, std::vector(before.activation.begin(), before.activation.end())));
-  return joined(joined(std::move(after), factors), before.given.after_division(change));
 }
 
 std::vector<double> Cortex::program_points_s() const {

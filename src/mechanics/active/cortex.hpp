@@ -45,7 +45,8 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
 
   /// Return, if areas relax, stress-free / reference areas at the beginning of this step and of the previous one; then
-  /// cell states, if used; then, if set from outside, factors of lateral faces; then overridden activities, if any.
+  /// cell states, if used, and those of the previous step, if cells follow them; then, if set from outside, factors of
+  /// lateral faces; then overridden activities, if any.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
 
@@ -126,6 +127,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] double activity_of_face(std::size_t face, const Step& step) const;
   void take_factors(const Step& step) const;
   [[nodiscard]] double factor_of(std::size_t face, const Step& step) const;
+  void take_mean_factors(const CompletedStep& completed) const;
   struct FaceTensions {                    // all faces at the end of a step
     std::vector<double> tensions, slopes;  // faces, filled up to whole batches
     Vectors positions;                     // what they depend on
@@ -153,7 +155,9 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] std::vector<double> area_increases(std::span<const Vec3> positions,
                                                    std::span<const Vec3> direction) const;
   [[nodiscard]] bool flows() const { return rule_.relaxation_s > 0; }
+  [[nodiscard]] bool follows() const { return rule_.activation.kind == ShapeActivationRule::Kind::follows; }
   [[nodiscard]] double rest_area_before(std::size_t face, const Step& step) const;
+  static std::vector<Face> acting_faces(const Tissue& tissue, CellSide side, const CellPattern& pattern);
   class Origins;  // faces before a division that faces after it come from
   void take_rest_areas();
   void take_stretches(std::vector<double> stretches);
@@ -161,11 +165,13 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   // An internal state, in its order. Parts that are not used are empty.
   struct Memory {
     std::span<const double> areas, areas_before;  // faces; stress-free / reference, at the beginning of both steps
-    std::span<const double> activation;           // cells; ShapeActivation
-    std::span<const double> factors;              // faces; empty: none set. Activities are given then, too
+    // Cells; ShapeActivation: now, and, where cells follow it, in the step before.
+    std::span<const double> activation, activation_before;
+    std::span<const double> factors;  // faces; empty: none set. Activities are given then, too
     GivenActivities given;
   };
   [[nodiscard]] Memory memory(std::span<const double> internal) const;
+  [[nodiscard]] std::vector<double> acting_midway(std::span<const double> internal) const;
   [[nodiscard]] double activity(CellId cell, double time_s, std::span<const double> internal) const;
   [[nodiscard]] double stiffening(CellId cell, const Step& step) const;
   // Derivatives of both by the state of the cell in ShapeActivation.
@@ -184,10 +190,12 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   // Faces, since the last change of the tissue: A_r / area in the undeformed tissue, 1 unless born after it, and the
   // area (um^2) from which A_r grows.
   std::vector<double> stretches_, ungrown_areas_;
+  Vectors rest_normals_;           // faces; in the rest shapes of then
   std::vector<double> strengths_;  // faces
   ShapeActivation activation_;
   std::vector<FaceBatch> batches_;
   std::vector<std::uint64_t> pairs_;  // faces; of their cells, if walls have noise
+  mutable NoiseOfPairs noise_;
   mutable FaceTensions kept_;  // of the last iterate, for all products of its linear system; one thread at a time
   // Factors of lateral faces (WallFactorRule), by the positions at the beginning of a step and the time at its end.
   struct Factors {

@@ -57,7 +57,7 @@ void Cortex::for_cells(const Face& face, const Body& body) const {
 }
 
 double Cortex::unit_tension(std::size_t f, double area) const {
-  const double factor = factor_of(f, step);
+  const double factor = rule_.walls.is_used() ? factors_.of_face[f] : 1;
   return factor * rule_.tension * area / (area + rule_.saturation * rest_areas_[f]);
 }
 

@@ -10,6 +10,49 @@ namespace plica {
 namespace {
 
 constexpr double least_in_surface = 1e-6;  // squared length of an axis of length 1
+constexpr int knots_per_correlation = 4;
+
+std::int64_t knot_before(const WallNoise& noise, double time_s) {
+  return static_cast<std::int64_t>(std::floor(time_s * knots_per_correlation / noise.correlation_s));
+}
+
+double deviate(const WallNoise& noise, std::uint64_t pair, int level, std::int64_t place) {
+  return normal_deviate(noise.seed,
+                        pair + static_cast<std::uint64_t>(place) + (static_cast<std::uint64_t>(level) << 60));
+}
+
+// Values of the process at a knot and at the next.
+std::array<double, 2> values_about(const WallNoise& noise, std::uint64_t pair, std::int64_t knot) {
+  constexpr int remembered = 12 * knots_per_correlation;
+  const double correlation = std::exp(-1.0 / knots_per_correlation);
+  double low = 0, weight = std::sqrt(1 - correlation * correlation);
+  const double fresh = weight * deviate(noise, pair, 0, knot + 1);
+  for (int k = 0; k < remembered; ++k, weight *= correlation) low += weight * deviate(noise, pair, 0, knot - k);
+  return {low, correlation * low + fresh};
+}
+
+// Factor between these values, by refining the process.
+double factor_between(const WallNoise& noise, std::uint64_t pair, std::array<double, 2> values, double time_s) {
+  constexpr int refinements = 3;
+  auto& [low, high] = values;
+  std::int64_t place = knot_before(noise, time_s);
+  double part = time_s * knots_per_correlation / noise.correlation_s - static_cast<double>(place),
+         half = 0.5 / knots_per_correlation;
+  for (int level = 1; level <= refinements; ++level, half /= 2, part *= 2) {
+    // Between two values, the middle has the mean (low + high)/(2 cosh h) and the variance tanh h.
+    const double middle =
+        (low + high) / (2 * std::cosh(half)) + std::sqrt(std::tanh(half)) * deviate(noise, pair, level, place);
+    const bool is_later = part >= 0.5;
+    (is_later ? low : high) = middle;
+    place = 2 * place + (is_later ? 1 : 0);
+    if (is_later) part -= 0.5;
+  }
+  const double rest = 1 - part;
+  const double normal =
+      (rest * low + part * high) / std::sqrt(rest * rest + part * part + 2 * part * rest * std::exp(-2 * half));
+  const double variance = std::log1p(noise.spread * noise.spread);
+  return std::exp(std::sqrt(variance) * normal - 0.5 * variance);
+}
 
 }  // namespace
 
@@ -48,32 +91,21 @@ std::array<Vec3, 4> direction_gradient(const WallDirection& direction, const std
 }
 
 double noise_factor(const WallNoise& noise, std::uint64_t pair, double time_s) {
-  // Knots in a correlation time, those remembered, and how often the process is refined between two of them.
-  constexpr int parts = 4, remembered = 12 * parts, refinements = 3;
-  const double at = time_s * parts / noise.correlation_s, correlation = std::exp(-1.0 / parts);
-  const auto knot = static_cast<std::int64_t>(std::floor(at));
-  const auto deviate = [&](int level, std::int64_t place) {
-    return normal_deviate(noise.seed,
-                          pair + static_cast<std::uint64_t>(place) + (static_cast<std::uint64_t>(level) << 60));
-  };
-  double low = 0, weight = std::sqrt(1 - correlation * correlation);
-  const double fresh = weight * deviate(0, knot + 1);
-  for (int k = 0; k < remembered; ++k, weight *= correlation) low += weight * deviate(0, knot - k);
-  double high = correlation * low + fresh, part = at - static_cast<double>(knot), half = 0.5 / parts;
-  std::int64_t place = knot;
-  for (int level = 1; level <= refinements; ++level, half /= 2, part *= 2) {
-    // Between two values, the middle has the mean (low + high)/(2 cosh h) and the variance tanh h.
-    const double middle = (low + high) / (2 * std::cosh(half)) + std::sqrt(std::tanh(half)) * deviate(level, place);
-    const bool is_later = part >= 0.5;
-    (is_later ? low : high) = middle;
-    place = 2 * place + (is_later ? 1 : 0);
-    if (is_later) part -= 0.5;
-  }
-  const double rest = 1 - part;
-  const double normal =
-      (rest * low + part * high) / std::sqrt(rest * rest + part * part + 2 * part * rest * std::exp(-2 * half));
-  const double variance = std::log1p(noise.spread * noise.spread);
-  return std::exp(std::sqrt(variance) * normal - 0.5 * variance);
+  return factor_between(noise, pair, values_about(noise, pair, knot_before(noise, time_s)), time_s);
+}
+
+void NoiseOfPairs::go_to(double time_s, std::span<const std::uint64_t> pairs) {
+  const std::int64_t knot = knot_before(noise_, time_s);
+  if (knot != knot_) values_.clear();
+  knot_ = knot;
+  for (const std::uint64_t pair : pairs)
+    if (const auto [value, is_new] = values_.try_emplace(pair); is_new)
+      value->second = values_about(noise_, pair, knot);
+  time_s_ = time_s;
+}
+
+double NoiseOfPairs::factor(std::uint64_t pair) const {
+  return factor_between(noise_, pair, values_.at(pair), time_s_);
 }
 
 std::vector<std::uint64_t> pair_numbers(const Tissue& tissue, std::span<const Face> faces) {

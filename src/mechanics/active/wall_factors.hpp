@@ -1,8 +1,11 @@
 // Factors on the tension of lateral faces: by their direction (planar polarity), and noise in time.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "tissue/faces.hpp"
@@ -41,6 +44,22 @@ std::array<Vec3, 4> direction_gradient(const WallDirection& direction, const std
 /// Return the noise factor of a pair of cells, by any number that both share. A function of rule, pair and time only,
 /// so that it needs no memory: it is linear between times a 32nd of the correlation time apart.
 double noise_factor(const WallNoise& noise, std::uint64_t pair, double time_s);
+
+/// The same factors of many pairs, at times that mostly follow each other: it keeps what they share.
+class NoiseOfPairs {
+ public:
+  explicit NoiseOfPairs(WallNoise noise) : noise_(noise) {}
+
+  /// Choose the time, and the pairs of which factors are asked then.
+  void go_to(double time_s, std::span<const std::uint64_t> pairs);
+  [[nodiscard]] double factor(std::uint64_t pair) const;
+
+ private:
+  WallNoise noise_;
+  double time_s_ = 0;
+  std::int64_t knot_ = -1;                                           // before this time
+  std::unordered_map<std::uint64_t, std::array<double, 2>> values_;  // pairs: of the process at this knot and the next
+};
 
 /// Numbers of the pairs of cells of faces, which these keep as long as they live.
 std::vector<std::uint64_t> pair_numbers(const Tissue& tissue, std::span<const Face> faces);

@@ -73,7 +73,8 @@ ScenarioTable exchange_table() {
           "Length, mean of base and apex, below which a lateral face turns if it shrinks and forces would lengthen the "
           "new one (µm)."),
       row("new_length_um", &X::new_length_um, positive, "Length of the new face (µm); default 1.7 times `below_um`."),
-      row("again_after_s", &X::again_after_s, not_negative, "Time after which a face may turn again (s)."),
+      row("again_after_s", &X::again_after_s, not_negative,
+          "Time after which a face that has turned, or that forces did not open, may turn (s)."),
       row("region", &X::region, anything, "Cells that exchange neighbours."),
   };
   info.rules = check_exchange;

@@ -84,6 +84,18 @@ TEST(WallFactors, OfNoiseAreContinuousAndIndependent) {
   EXPECT_NE(noise_factor(noise, 1, 50), noise_factor({.spread = 0.5, .correlation_s = 120, .seed = 8}, 1, 50));
 }
 
+TEST(WallFactors, OfNoiseAreTheSameForManyPairs) {
+  NoiseOfPairs kept(noise);
+  std::vector<std::uint64_t> pairs;
+  for (int pair = 0; pair < 20; ++pair) {
+    pairs.push_back(pair_number(pair, 7));
+    for (const double time_s : {0.0, 3.0, 35.0, 29.0, 300.0, 301.5}) {
+      kept.go_to(time_s, pairs);
+      for (const std::uint64_t one : pairs) EXPECT_EQ(kept.factor(one), noise_factor(noise, one, time_s));
+    }
+  }
+}
+
 TEST(WallFactors, LeaveForcesThoseOfAnEnergy) {
   const Tissue tissue =
       distorted_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}}, 2, 3);
