@@ -79,6 +79,24 @@ class TapeOf {
     return nb::make_tuple(array_of(std::move(gradient.by_parameter)), array_of(std::move(gradient.by_strength)));
   }
 
+  /// One row per outcome.
+  [[nodiscard]] nb::object jacobian(const std::vector<std::map<std::size_t, NodeVectors>>& outcomes,
+                                    const std::vector<std::shared_ptr<ModelPair>>& parameters, double tolerance) const {
+    std::vector<OutcomeGradient> by_positions;
+    for (const auto& outcome : outcomes) {
+      OutcomeGradient& of_outcome = by_positions.emplace_back();
+      for (const auto& [state, gradient] : outcome) of_outcome[state] = vectors_of(gradient);
+    }
+    const auto rows = computed(threads_, [&](const auto& stop) {
+      TangentInput wanted{{}, tolerance, stop};
+      for (const auto& parameter : parameters) wanted.parameters.push_back(parameter.get());
+      return tape_.jacobian(by_positions, wanted).value_or(std::vector<std::vector<double>>());
+    });
+    std::vector<double> numbers;
+    for (const auto& row : rows) numbers.insert(numbers.end(), row.begin(), row.end());
+    return array_of(std::move(numbers));
+  }
+
   [[nodiscard]] const Tape& tape() const { return tape_; }
 
  private:
@@ -97,6 +115,7 @@ void bind_tapes(nb::module_& module) {
       .def("parameter", &TapeOf::parameter, nb::arg("name"), nb::arg("more"), nb::arg("less"), nb::arg("difference"))
       .def("gradient", &TapeOf::gradient, nb::arg("outcome"), nb::arg("parameters"), nb::arg("law"),
            nb::arg("tolerance"))
+      .def("jacobian", &TapeOf::jacobian, nb::arg("outcomes"), nb::arg("parameters"), nb::arg("tolerance"))
       .def(
           "state_at", [](const TapeOf& self, double time_s) { return self.tape().state_at(time_s); }, nb::arg("time_s"))
       .def(

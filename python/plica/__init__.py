@@ -14,6 +14,7 @@ from .centres import polygons_of_centres
 from .emulator import Emulator
 from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaError, ScenarioError
 from .experiments import reproduce
+from .fits import Combination, Fit, Miss, fit
 from .indices import SobolIndices
 from .labels import polygons_of_labels
 from .monolayers import polygons_of_monolayer, tissue_of_monolayer
@@ -34,13 +35,16 @@ from .volumes import tissue_of_labels
 
 __all__ = [
     "Calibration",
+    "Combination",
     "Comparison",
     "Diagnostic",
     "Emulator",
     "FileError",
+    "Fit",
     "Frame",
     "Frames",
     "GradientCheck",
+    "Miss",
     "MissingExtra",
     "NumericsError",
     "PlicaError",
@@ -61,6 +65,7 @@ __all__ = [
     "calibrate",
     "check_gradient",
     "compare",
+    "fit",
     "load",
     "movie",
     "open",

@@ -47,3 +47,36 @@ class Progress:
             self.bar.close()
         else:
             sys.stderr.write("\n")
+
+
+class Counter:
+    """Count of runs of unknown number: by tqdm if installed, else one line on the terminal. Does nothing if not shown."""
+
+    def __init__(self, what: str, unit: str, is_shown: bool) -> None:
+        self.what, self.unit, self.is_shown, self.count = what, unit, is_shown, 0
+        self.bar: Any = None
+        try:
+            from tqdm.auto import tqdm
+
+            self.bar = tqdm(desc=what, unit=unit) if is_shown else None
+        except ImportError:
+            pass
+
+    def add(self, told: str) -> None:
+        """Count one, and show where it is."""
+        self.count += 1
+        if self.bar is not None:
+            self.bar.set_postfix_str(told, refresh=False)
+            self.bar.update()
+        elif self.is_shown:
+            sys.stderr.write(f"\r{self.what}: {self.count} {self.unit}s  {told}\x1b[K")
+            sys.stderr.flush()
+
+    def __enter__(self) -> Counter:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.bar is not None:
+            self.bar.close()
+        elif self.is_shown:
+            sys.stderr.write("\n")

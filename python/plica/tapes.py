@@ -199,6 +199,63 @@ class Tape:
             return by_cell
         return float(by_key[0]) if isinstance(of, str) else by_key
 
+    def jacobian(
+        self,
+        outcomes: Union[str, Loss, Iterable[Union[str, Loss]]],
+        *,
+        of: Union[str, Iterable[str]],
+        at_min: Union[None, float, Iterable[float]] = None,
+        tolerance: float = 1e-9,
+    ) -> Array:
+        """Return the derivatives of several outcomes at several times by several keys.
+
+        Parameters
+        ----------
+        outcomes : str, callable, or iterable of them
+            Outcomes, each of one time, as for `gradient`.
+        of : str or iterable of str
+            Keys with a number, up to about twenty.
+        at_min : float or iterable of float, optional
+            Times, minutes; by default the end of the run.
+        tolerance : float
+            Relative tolerance of linear solves.
+
+        Returns
+        -------
+        ndarray of float, shape (outcomes, times, keys)
+            Per unit of each key.
+
+        Raises
+        ------
+        ValueError
+            As `gradient`.
+
+        Notes
+        -----
+        The cost depends on the number of keys only, since the derivatives of all positions are followed through the run. For
+        one outcome and many keys, or for cells, `gradient` is cheaper.
+
+        Examples
+        --------
+        >>> import plica
+        >>> tape = plica.record("drosophila", until_min=1, at_min=0.5)
+        >>> keys = ["contraction.apical.stiffness_nN_per_um", "elasticity.young_modulus_Pa"]
+        >>> tape.jacobian(["furrow_depth_um", "vml_apical_area_ratio"], of=keys, at_min=[0.5, 1]).shape
+        (2, 2, 2)
+        """
+        given: list[Any] = [outcomes] if isinstance(outcomes, str) or callable(outcomes) else list(outcomes)
+        times: list[Optional[float]] = [None] if at_min is None else list(_times(at_min))
+        keys = texts_of(of, "of")
+        slopes = self._rows([(outcome, time) for outcome in given for time in times], keys, tolerance)[1]
+        return slopes.reshape(len(given), len(times), len(keys))
+
+    def _rows(self, rows: list[tuple[Any, Optional[float]]], keys: list[str], tolerance: float) -> tuple[Array, Array]:
+        """Return values and derivatives by keys, one row per outcome and time."""
+        accuracy = number_from(tolerance, 0, "tolerance", "a number above 0", above=True)
+        found = [self._evaluate(outcome, time) for outcome, time in rows]
+        slopes = self._core.jacobian([gradient for _, gradient in found], [self._parameter(key) for key in keys], accuracy)
+        return np.array([value for value, _ in found]), slopes.reshape(len(rows), len(keys))
+
     def _states(self, at_min: Union[None, float, Iterable[float]]) -> list[int]:
         if at_min is None:
             return [len(self._core.times_s) - 1]

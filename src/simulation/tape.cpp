@@ -8,6 +8,7 @@
 
 #include "core/clock.hpp"
 #include "core/errors.hpp"
+#include "core/parallel.hpp"
 
 namespace plica {
 namespace {
@@ -124,6 +125,19 @@ ModelPair Tape::parameter(std::string name, const Scenario& more, const Scenario
   return model_pair(*solved_, std::move(name), solved_model(more), solved_model(less), difference);
 }
 
+OutcomeGradient Tape::of_solved_side(const OutcomeGradient& outcome) const {
+  if (!mirror_.is_used()) return outcome;
+  OutcomeGradient of_side;
+  for (const auto& [state, of_whole] : outcome) {
+    Vectors& sum = of_side[state] = Vectors(solved_->tissue.node_count(), Vec3::Zero());
+    for (std::size_t n = 0; n < of_whole.size(); ++n) {
+      const auto [node, signs] = mirror_.image(NodeId(n));
+      sum[node.index()] += signs.cwiseProduct(of_whole[n]);
+    }
+  }
+  return of_side;
+}
+
 std::optional<RunGradient> Tape::gradient(const OutcomeGradient& outcome, const Wanted& wanted) const {
   GradientInput input{
       .parameters = wanted.parameters, .tolerance = wanted.tolerance, .stop_requested = wanted.stop_requested};
@@ -132,19 +146,7 @@ std::optional<RunGradient> Tape::gradient(const OutcomeGradient& outcome, const 
     const auto unscaled = unscaled_.find(*input.law);
     if (unscaled != unscaled_.end()) input.unscaled_law = unscaled->second.get();
   }
-  OutcomeGradient of_side;
-  for (const auto& [state, of_whole] : outcome) {
-    if (!mirror_.is_used()) {
-      of_side[state] = of_whole;
-      continue;
-    }
-    Vectors& sum = of_side[state] = Vectors(solved_->tissue.node_count(), Vec3::Zero());
-    for (std::size_t n = 0; n < of_whole.size(); ++n) {
-      const auto [node, signs] = mirror_.image(NodeId(n));
-      sum[node.index()] += signs.cwiseProduct(of_whole[n]);
-    }
-  }
-  std::optional<RunGradient> gradient = way_back(*solved_, run_, method_.linear_method, of_side, input);
+  std::optional<RunGradient> gradient = way_back(*solved_, run_, method_.linear_method, of_solved_side(outcome), input);
   if (gradient && input.law && mirror_.is_used()) {
     const std::vector<double> by_side = std::move(gradient->by_strength);
     const double copies = static_cast<double>(mirror_.cells.size()) / static_cast<double>(by_side.size());
@@ -152,6 +154,27 @@ std::optional<RunGradient> Tape::gradient(const OutcomeGradient& outcome, const 
     for (const CellId cell : mirror_.cells) gradient->by_strength.push_back(by_side[cell.index()] / copies);
   }
   return gradient;
+}
+
+std::optional<std::vector<std::vector<double>>> Tape::jacobian(const std::vector<OutcomeGradient>& outcomes,
+                                                               const TangentInput& wanted) const {
+  std::vector<std::vector<double>> rows(outcomes.size(), std::vector<double>(wanted.parameters.size(), 0.0));
+  std::vector<OutcomeGradient> of_side;
+  std::size_t last = 0;
+  for (const OutcomeGradient& outcome : outcomes) {
+    of_side.push_back(of_solved_side(outcome));
+    if (!outcome.empty()) last = std::max(last, outcome.rbegin()->first);
+  }
+  const auto add = [&](std::size_t state, std::span<const Vectors> by_parameter) {
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      const auto gradient = of_side[row].find(state);
+      if (gradient == of_side[row].end()) continue;
+      for (std::size_t p = 0; p < by_parameter.size(); ++p)
+        rows[row][p] += parallel_dot(std::span<const Vec3>(gradient->second), std::span<const Vec3>(by_parameter[p]));
+    }
+  };
+  if (!tangents(*solved_, run_, method_.linear_method, last, wanted, add)) return std::nullopt;
+  return rows;
 }
 
 Tape Tape::replayed(const Scenario& scenario, const StrengthFactors& strengths) const {

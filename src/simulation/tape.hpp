@@ -13,6 +13,7 @@
 #include "measure/smooth_outcome.hpp"
 #include "scenario/scenario.hpp"
 #include "simulation/simulation.hpp"
+#include "solver/sensitivity/tangents.hpp"
 #include "solver/sensitivity/way_back.hpp"
 #include "tissue/mirror.hpp"
 
@@ -71,6 +72,11 @@ class Tape {
   /// share the derivative by their common strength equally. Empty if stopped.
   [[nodiscard]] std::optional<RunGradient> gradient(const OutcomeGradient& outcome, const Wanted& wanted) const;
 
+  /// Return the derivatives of outcomes by parameters, one row per outcome, by tangents: up to about twenty parameters,
+  /// and many outcomes, for about the price of a run. Empty if stopped.
+  [[nodiscard]] std::optional<std::vector<std::vector<double>>> jacobian(const std::vector<OutcomeGradient>& outcomes,
+                                                                         const TangentInput& wanted) const;
+
   /// Repeat the same steps with tight tolerances, for another scenario or other strengths: an oracle of gradients.
   [[nodiscard]] Tape replayed(const Scenario& scenario, const StrengthFactors& strengths) const;
   [[nodiscard]] const Scenario& scenario() const { return *scenario_; }
@@ -79,6 +85,8 @@ class Tape {
  private:
   Tape() = default;
   [[nodiscard]] std::unique_ptr<Model> solved_model(const Scenario& scenario) const;
+  /// Return the gradient by positions of the solved side.
+  [[nodiscard]] OutcomeGradient of_solved_side(const OutcomeGradient& outcome) const;
 
   std::shared_ptr<const Scenario> scenario_;
   std::shared_ptr<const Model> whole_, solved_;

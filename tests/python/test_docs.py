@@ -74,6 +74,7 @@ def test_gradients_page(capsys):
     names = run_blocks("docs/how-to/gradients.md")
     assert names["by_cell"].shape == (756,)
     assert abs(names["np"].exp(names["found"].x) - names["truth"]).max() < 0.02
+    assert "Identified" in capsys.readouterr().out
 
 
 def test_answers_page(tmp_path, monkeypatch):

@@ -91,6 +91,18 @@ def test_one_way_back_gives_all_keys(tape):
     assert both[1] == pytest.approx(tape.gradient("top.area_um2", of=keys[1]), rel=1e-9)
 
 
+def test_jacobians_are_gradients(tape):
+    keys = ["cortex.apical.tension_mN_per_m", "elasticity.young_modulus_Pa", "dynamics.surface_drag_Pa_s_per_um"]
+    slopes = tape.jacobian(OUTCOMES, of=keys, at_min=[0.5, 1])
+    by_way_back = [[tape.gradient(outcome, of=keys, at_min=time) for time in (0.5, 1)] for outcome in OUTCOMES]
+    assert slopes.shape == (4, 2, 3)
+    assert slopes == pytest.approx(np.array(by_way_back), rel=1e-7)
+    mean = tape.jacobian(lambda x: (x.mean(), np.full_like(x, 1 / x.size)), of=keys[0])
+    assert mean.shape == (1, 1, 1) and mean[0, 0, 0] == pytest.approx(tape.gradient(lambda x: (x.mean(), np.full_like(x, 1 / x.size)), of=keys[0]))
+    with pytest.raises(ValueError, match="no step ends at 0.7 min"):
+        tape.jacobian(OUTCOMES, of=keys, at_min=0.7)
+
+
 def test_tensions_are_recovered_from_a_shape():
     truth = np.array([1.3, 0.7, 1.1, 0.8, 1.2, 0.9])
     shape = plica.record(BLOCK, strengths={"cortex.apical": truth}).positions()

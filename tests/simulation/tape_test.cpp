@@ -37,6 +37,7 @@ struct Case {
   std::vector<double> at_s = {};  // further times that the outcome looks at
   double tolerance = 1e-7;
   double first_h = 1e-3;
+  double between_ways = 1e-8;  // relative difference of tangents and way back
 };
 
 // Compares with differences at several h, of which the best counts: larger ones have their own error, smaller ones the
@@ -76,6 +77,18 @@ void expect_gradient(const Case& c, int most_of_sweep = 3) {
   double floor = 0;
   for (std::size_t k = 0; k < c.keys.size(); ++k)
     floor = std::max(floor, 0.03 * std::abs(gradient->by_parameter[k] * c.keys[k].value));
+
+  TangentInput tangent_input{.tolerance = 1e-11};
+  tangent_input.parameters = wanted.parameters;
+  const auto jacobian = tape.jacobian({by_positions, {}}, tangent_input);
+  ASSERT_TRUE(jacobian && jacobian->size() == 2);
+  EXPECT_EQ(jacobian->back(), std::vector<double>(c.keys.size(), 0.0));
+  for (std::size_t k = 0; k < c.keys.size(); ++k) {
+    const double by_way_back = gradient->by_parameter[k], by_tangent = jacobian->front()[k];
+    const double error = std::abs(by_tangent - by_way_back) / (std::abs(by_way_back) + floor / c.keys[k].value);
+    EXPECT_LE(error, c.between_ways) << c.keys[k].name << ": " << by_tangent << ", " << by_way_back;
+    fmt::print("{:44} tangent and way back differ by {:.1e}\n", c.keys[k].name, error);
+  }
 
   const auto expect_as_differences = [&](const std::string& name, double by_way_back, const auto& changed) {
     double best = std::numeric_limits<double>::infinity();

@@ -23,6 +23,7 @@
 #include "mechanics/contact/edge_pairs.hpp"
 #include "mechanics/coulomb.hpp"
 #include "mechanics/derivatives.hpp"
+#include "mechanics/internal_change.hpp"
 #include "mechanics/law.hpp"
 #include "tissue/mirror.hpp"
 #include "tissue/tissue.hpp"
@@ -40,7 +41,7 @@ struct SelfContactRule {
 
 /// Self-contact law. The pairs of a step are its internal state, detected again when a step is accepted. Pairs that may
 /// touch join their nodes, so the sparsity pattern changes from step to step.
-class SelfContact final : public Law, public LawDerivatives {
+class SelfContact final : public Law, public LawDerivatives, public InternalChange {
  public:
   /// Make the law for a tissue, or for one side of it. Points, facets and pairs number nodes as in the full tissue;
   /// positions, forces and blocks are those of the side.
@@ -81,6 +82,8 @@ class SelfContact final : public Law, public LawDerivatives {
                           const BeginningGradient& gradient) const override;
   void add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
                              std::span<Vec3> positions, const BeginningGradient& gradient) const override;
+  void add_internal_change(const Step& step, std::span<const double> next, const StepChange& change,
+                           std::span<double> of_next) const override;
   [[nodiscard]] std::vector<double> next_internal_like(const Law& /*law*/, const Step& /*step*/,
                                                        std::span<const double> /*next*/) const override {
     return {};

@@ -10,8 +10,9 @@ namespace {
 
 /// Positions of the nodes of a pair.
 struct PairNodes {
-  std::array<Vec3, 4> p, q;
+  std::array<Vec3, 4> p = still(), q = still();
 
+  static std::array<Vec3, 4> still() { return {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}; }
   PairNodes(const ContactPair& pair, const MirroredVectors& x) {
     for (int i = 0; i < pair.p.count(); ++i) p[i] = x[pair.p.nodes[i].index()];
     for (int i = 0; i < pair.q.count(); ++i) q[i] = x[pair.q.nodes[i].index()];
@@ -116,6 +117,49 @@ double along_adjoint(const ContactPair& pair, const ContactPair& adjoint) {
   return sum;
 }
 
+/// Origin of the contact distance of a pair: the pair before with this index, its first gap, or else the rule.
+struct DistanceOrigin {
+  std::optional<std::size_t> before = {};
+  bool is_first_gap = false;
+};
+DistanceOrigin origin_of_distance(const ContactPair& pair, std::span<const ContactPair> before, double of_rule) {
+  if (pair.distance >= (pair.is_of_edges() ? of_rule / 2 : of_rule)) return {};
+  const auto last = std::ranges::find_if(before, [&](const ContactPair& one) {
+    return one.distance == pair.distance && one.is_of_edges() == pair.is_of_edges() &&
+           (pair.is_of_edges() || one.first == pair.first);
+  });
+  if (last != before.end()) return {static_cast<std::size_t>(last - before.begin())};
+  return {{}, pair.distance == pair.first_gap};
+}
+
+constexpr double size_um = 1e-5;  // of differences
+
+/// Return the derivatives of the numbers of a pair that positions determine, along a motion of its nodes; the others 0.
+ContactPair change_of(const ContactPair& pair, const PairNodes& x, const PairNodes& motion) {
+  ContactPair change = {};
+  double largest = 0;
+  for (const auto* of_place : {&motion.p, &motion.q})
+    for (const Vec3& of_node : *of_place) largest = std::max(largest, of_node.norm());
+  if (largest == 0) return change;
+  const double size = size_um / largest;
+  const auto moved_by = [&](double signed_size) {
+    PairNodes moved = x;
+    for (int i = 0; i < 4; ++i) moved.p[i] += signed_size * motion.p[i], moved.q[i] += signed_size * motion.q[i];
+    return moved_pair(pair, moved);
+  };
+  const ContactPair more = moved_by(size), less = moved_by(-size);
+  const auto slope = [&]<class Value>(const Value& of_more, const Value& of_less) -> Value {
+    return (of_more - of_less) / (2 * size);
+  };
+  for (int i = 0; i < 4; ++i) {
+    change.p.weights[i] = slope(more.p.weights[i], less.p.weights[i]);
+    change.q.weights[i] = slope(more.q.weights[i], less.q.weights[i]);
+  }
+  change.normal = slope(more.normal, less.normal);
+  change.first_gap = slope(more.first_gap, less.first_gap);
+  return change;
+}
+
 std::span<ContactPair> pairs_in(std::span<double> internal) {
   return {reinterpret_cast<ContactPair*>(internal.data() + 1), (internal.size() - 1) / numbers_of_pair};
 }
@@ -174,22 +218,15 @@ void SelfContact::add_internal_gradient(const Step& step, std::span<const double
   for (std::size_t k = 0; k < found.size(); ++k) {
     const Pair& pair = found[k];
     Pair of_pair = adjoints[k];
-    // The contact distance is that of the rule, the first gap, or that of a pair before.
-    const double largest = pair.is_of_edges() ? rule_.distance / 2 : rule_.distance;
-    if (of_pair.distance != 0 && pair.distance < largest) {
-      const auto is_same = [&](const Pair& last) {
-        return last.distance == pair.distance && last.is_of_edges() == pair.is_of_edges() &&
-               (pair.is_of_edges() || last.first == pair.first);
-      };
-      const auto last = std::ranges::find_if(before, is_same);
-      if (last != before.end())
-        pairs_in(gradient.internal)[static_cast<std::size_t>(last - before.begin())].distance += of_pair.distance;
-      else if (pair.distance == pair.first_gap)
+    if (of_pair.distance != 0) {
+      const auto [place, is_first_gap] = origin_of_distance(pair, before, rule_.distance);
+      if (place)
+        pairs_in(gradient.internal)[*place].distance += of_pair.distance;
+      else if (is_first_gap)
         of_pair.first_gap += of_pair.distance;
     }
     if (along_adjoint(of_pair, of_pair) == 0) continue;
     // By differences over the few coordinates that the pair depends on.
-    constexpr double size_um = 1e-5;
     PairNodes nodes(pair, x);
     const auto add = [&](const SurfacePlace& place, std::array<Vec3, 4>& of_nodes) {
       for (int i = 0; i < place.count(); ++i) {
@@ -210,6 +247,29 @@ void SelfContact::add_internal_gradient(const Step& step, std::span<const double
     };
     add(pair.p, nodes.p);
     add(pair.q, nodes.q);
+  }
+}
+
+void SelfContact::add_internal_change(const Step& step, std::span<const double> next, const StepChange& change,
+                                      std::span<double> of_next) const {
+  if (next.empty()) return;
+  const std::span<const Pair> found = pairs_of(next), before = pairs_of(step.internal);
+  const std::span<const Pair> of_before = pairs_of(change.internal);
+  const std::span<Pair> of_found = pairs_in(of_next);
+  const MirroredVectors x{mirror_, step.positions}, motion{mirror_, change.positions};
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const Pair& pair = found[k];
+    Pair of_pair = change_of(pair, {pair, x}, {pair, motion});
+    const auto [place, is_first_gap] = origin_of_distance(pair, before, rule_.distance);
+    const double of_distance = place ? of_before[*place].distance : is_first_gap ? of_pair.first_gap : 0;
+    Pair& sum = of_found[k];
+    for (int i = 0; i < 4; ++i) {
+      sum.p.weights[i] += of_pair.p.weights[i];
+      sum.q.weights[i] += of_pair.q.weights[i];
+    }
+    sum.normal += of_pair.normal;
+    sum.first_gap += of_pair.first_gap;
+    sum.distance += of_distance;
   }
 }
 

@@ -4,22 +4,50 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/parallel.hpp"
+
 namespace plica {
 
 ExactSolve::ExactSolve(const Model& model, LinearMethod method)
     : model_(model), system_(model), directions_(make_directions(model, method, {})) {}
 
-ExactSolve::Solution ExactSolve::solve(const Step& step, const Iterate& at, std::span<const Vec3> forces,
-                                       double tolerance) {
+KrylovVector ExactSolve::right_of(const Step& step, const Iterate& at, const RightSide& input) {
+  KrylovVector right(system_.size(), 0.0);
+  solution_.assign(system_.size(), 0.0);
+  if (!input.fixed.empty()) {
+    std::ranges::copy(input.fixed, system_.of_nodes(solution_).begin());
+    system_.multiply(step, at, solution_, right);
+    for (double& number : right) number = -number;
+  }
+  const std::span<Vec3> forces = system_.of_nodes(right);
+  for (std::size_t n = 0; n < forces.size(); ++n) forces[n] += input.forces[n];
+  system_.project(forces);
+  const std::span<double> rows = system_.of_rows(right);
+  for (std::size_t row = 0; row < rows.size() && !input.rates.empty(); ++row)
+    rows[row] -= system_.units()[row] * input.rates[system_.jacobian().multiplier(row)];
+  return right;
+}
+
+ExactSolve::Solution ExactSolve::solve(const Step& step, const Iterate& at, const RightSide& input, double tolerance) {
   system_.take(step, at);
   const ConstraintJacobian& J = system_.jacobian();
   std::vector<double> weights;
   for (std::size_t row = 0; row < J.rows(); ++row) weights.push_back(model_.force_scale() / J.gradient_scale(row));
   system_.set_units(weights);
+  const KrylovVector right = right_of(step, at, input);
+  if (parallel_dot(right, right) > 0) correct(step, at, right, tolerance);
 
-  KrylovVector right(system_.size(), 0.0);
-  std::ranges::copy(forces, system_.of_nodes(right).begin());
-  system_.project(system_.of_nodes(right));
+  Solution result;
+  result.positions.assign(system_.of_nodes(std::as_const(solution_)).begin(),
+                          system_.of_nodes(std::as_const(solution_)).end());
+  result.multipliers.assign(at.multipliers.size(), 0.0);
+  const std::span<const double> rows = system_.of_rows(std::as_const(solution_));
+  for (std::size_t row = 0; row < rows.size(); ++row) result.multipliers[J.multiplier(row)] = rows[row];
+  return result;
+}
+
+void ExactSolve::correct(const Step& step, const Iterate& at, const KrylovVector& right, double tolerance) {
+  const ConstraintJacobian& J = system_.jacobian();
   Residual residual;
   Direction direction;
   double left = 1;  // of the right side
@@ -45,16 +73,9 @@ ExactSolve::Solution ExactSolve::solve(const Step& step, const Iterate& at, std:
                          left = so_far.residual;
                          return true;
                        },
-                       solution_);
+                       correction_);
   if (!report.converged) throw std::runtime_error("gradient: the linear system of a step was not solved accurately");
-
-  Solution result;
-  result.positions.assign(system_.of_nodes(std::as_const(solution_)).begin(),
-                          system_.of_nodes(std::as_const(solution_)).end());
-  result.multipliers.assign(at.multipliers.size(), 0.0);
-  const std::span<const double> rows = system_.of_rows(std::as_const(solution_));
-  for (std::size_t row = 0; row < rows.size(); ++row) result.multipliers[J.multiplier(row)] = rows[row];
-  return result;
+  for (std::size_t i = 0; i < solution_.size(); ++i) solution_[i] += correction_[i];
 }
 
 Vectors ExactSolve::unbalanced(const Step& step, const Iterate& at, std::span<const Vec3> forces) const {

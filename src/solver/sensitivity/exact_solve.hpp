@@ -10,7 +10,7 @@ namespace plica {
 
 /// Solver of
 ///   [ A  -J^T ] [ x ]   [ forces ]
-///   [ -J   0  ] [ l ] = [   0    ]   with x = 0 along fixed directions
+///   [ -J   0  ] [ l ] = [ -rates ]   with given x along fixed directions
 /// at solved steps, to any accuracy: conjugate residuals with Newton's directions as preconditioner. It keeps their
 /// factorization from step to step. The system is symmetric, so it serves transposed problems.
 class ExactSolve {
@@ -21,9 +21,16 @@ class ExactSolve {
     Vectors positions;                // x; nodes, including hanging ones
     std::vector<double> multipliers;  // l; all constraints
   };
-  /// Solve with forces that free nodes carry (Tissue::carry_hanging), to a relative tolerance. Throws
-  /// std::runtime_error if it is not reached.
-  [[nodiscard]] Solution solve(const Step& step, const Iterate& at, std::span<const Vec3> forces, double tolerance);
+  struct RightSide {
+    std::span<const Vec3> forces;        // nodes; those of hanging ones are carried (Tissue::carry_hanging)
+    std::span<const double> rates = {};  // all constraints; empty: 0
+    std::span<const Vec3> fixed = {};    // nodes: x along fixed directions; empty: 0
+  };
+  /// Solve to a relative tolerance. Throws std::runtime_error if it is not reached.
+  [[nodiscard]] Solution solve(const Step& step, const Iterate& at, const RightSide& right, double tolerance);
+
+  /// Factorise again at the next solve, which pays for several of one step.
+  void renew() { directions_->forget_factor(); }
 
   /// Return forces - A x + J^T l of the last solve, along all directions: what fixed directions bear; nodes.
   [[nodiscard]] Vectors unbalanced(const Step& step, const Iterate& at, std::span<const Vec3> forces) const;
@@ -33,12 +40,17 @@ class ExactSolve {
   [[nodiscard]] int factorisations() const { return cost_.factorisations; }
 
  private:
+  /// Start the solution along fixed directions, and return what is left of the right side.
+  KrylovVector right_of(const Step& step, const Iterate& at, const RightSide& input);
+  /// Add the solution for a right side that is not 0.
+  void correct(const Step& step, const Iterate& at, const KrylovVector& right, double tolerance);
+
   const Model& model_;
   LinearisedSystem system_;
   std::unique_ptr<NewtonDirections> directions_;
   NewtonDirections::Cost cost_;
   ConjugateResiduals residuals_;
-  KrylovVector solution_;
+  KrylovVector solution_, correction_;
 };
 
 }  // namespace plica

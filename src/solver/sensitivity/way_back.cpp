@@ -1,15 +1,15 @@
 #include "solver/sensitivity/way_back.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "solver/sensitivity/step_terms.hpp"
 
 namespace plica {
 namespace {
 
-using Internals = std::vector<std::vector<double>>;
+using Internals = LawInternals;
 
 Internals zeros_like(const Internals& internals) {
   Internals zeros;
@@ -31,70 +31,24 @@ double product(const Signals::Values& a, const Signals::Values& b) {
 /// Solved adjoint problem of one step.
 struct StepAdjoint {
   const TapedRun& run;
-  std::size_t number;
-  const Step& step;
-  const Iterate& at;
+  std::size_t number;                    // of the step
   const ExactSolve::Solution& solution;  // mu and nu
   const Vectors& on_obstacles;           // forces that fixed directions bear; empty without contacts
   const Internals& internals;            // gradient by internal states at the end of the step
   const Signals::Values& signals;        // and by signals there
 };
 
-/// Return the outcome's dependence on a model, up to a constant: the part of its forces, targets, obstacles and
-/// memories along the adjoint.
-double along_adjoint(const Model& first_model, const StepAdjoint& adjoint) {
-  const auto& [run, number, step_of_run, at, solution, on_obstacles, internals, signals] = adjoint;
-  const std::optional<Model> later = run.grown_in(number, first_model);
-  const Model& model = later ? *later : first_model;
-  Step step = step_of_run;
-  step.grown = nullptr;
-  double sum = 0;
-  Vectors forces(at.positions.size(), Vec3::Zero());
-  std::size_t l = 0;
-  for_laws(model, step, [&](const Law& law, const Step& law_step) {
-    law.add_forces(law_step, forces);
-    const std::vector<double>& of_next = internals[l];
-    const std::vector<double>& next_of_run = run.states[number + 1].internals[l++];
-    if (is_zero(of_next)) return;
-    const std::vector<double> next = law.with_signals(law.derivatives().next_internal_like(law, law_step, next_of_run),
-                                                      run.states[number + 1].signals, step.end_time_s);
-    for (std::size_t i = 0; i < next.size(); ++i) sum += of_next[i] * next[i];
-  });
-  for_held_constraints(model, [&](const Constraint& constraint, std::size_t first, std::size_t) {
-    constraint.add_forces(at.positions, std::span(at.multipliers).subspan(first, constraint.count()), forces);
-    std::vector<double> values(constraint.count());
-    constraint.values(at.positions, values);
-    for (std::size_t f = 0; f < values.size(); ++f)
-      sum += solution.multipliers[first + f] * (values[f] - constraint.targets()[f]);
-  });
-  if (!signals.empty()) {
-    State begin, end;
-    begin.time_s = run.states[number].time_s, end.time_s = step.end_time_s;
-    begin.positions = run.states[number].positions, end.positions = at.positions;
-    begin.signals = run.states[number].signals, end.internals = run.states[number + 1].internals;
-    if (const auto failure = advance_signals(model, begin, end)) throw std::runtime_error(failure->problem);
-    sum += product(signals, end.signals);
-  }
-  if (!on_obstacles.empty()) {
-    const ObstacleContacts contacts(model);
-    for (std::size_t place = 0; place < contacts.node_count(); ++place) {
-      const auto of_node = contacts.at_node(place);
-      const NodeObstacles touched = node_obstacles(model, contacts, of_node, at);
-      if (touched.count == 0) continue;
-      const std::size_t n = contacts.node(of_node.front()).index();
-      // Touched obstacles push along their normals, and carry the node along with them.
-      Eigen::MatrixXd normals(3, touched.count);
-      Eigen::VectorXd gaps(touched.count);
-      for (int k = 0; k < touched.count; ++k) {
-        forces[n] += at.obstacle_forces[touched.contact[k]] * touched.inward[k];
-        normals.col(k) = touched.free_normal[k];
-        gaps[k] = contacts.gap(touched.contact[k], at.positions).value;
-      }
-      const Vec3 moved = -normals * (normals.transpose() * normals).ldlt().solve(gaps);
-      sum += on_obstacles[n].dot(moved);
-    }
-  }
-  return sum + parallel_dot(std::span<const Vec3>(solution.positions), std::span<const Vec3>(forces));
+/// Return the outcome's dependence on a model, up to a constant: its terms along the adjoint.
+double along_adjoint(const Model& model, const StepAdjoint& adjoint) {
+  TermsWanted wanted{.signals = !adjoint.signals.empty()};
+  for (const auto& internal : adjoint.internals) wanted.internals.push_back(!is_zero(internal));
+  const StepTerms terms = step_terms(model, adjoint.run, adjoint.number, wanted);
+  double sum = product(adjoint.signals, terms.signals);
+  for (std::size_t l = 0; l < terms.internals.size(); ++l)
+    for (std::size_t i = 0; i < terms.internals[l].size(); ++i) sum += adjoint.internals[l][i] * terms.internals[l][i];
+  for (std::size_t f = 0; f < terms.excess.size(); ++f) sum += adjoint.solution.multipliers[f] * terms.excess[f];
+  for (std::size_t n = 0; n < adjoint.on_obstacles.size(); ++n) sum += adjoint.on_obstacles[n].dot(terms.moved[n]);
+  return sum + parallel_dot(std::span<const Vec3>(adjoint.solution.positions), std::span<const Vec3>(terms.forces));
 }
 
 class WayBack {
@@ -162,8 +116,8 @@ class WayBack {
     // The forces' part, by the step's own system.
     model_.tissue.carry_hanging(by_end);
     if (parallel_squared_norm(by_end) > 0) {
-      const ExactSolve::Solution solution = solver_.solve(step, at, by_end, input_.tolerance);
-      add_parameters({run_, n, step, at, solution, on_obstacles(step, at, by_end), internals_, signals});
+      const ExactSolve::Solution solution = solver_.solve(step, at, {by_end}, input_.tolerance);
+      add_parameters({run_, n, solution, on_obstacles(step, at, by_end), internals_, signals});
       for_gradients([&](const LawDerivatives& law, const Step& law_step, std::size_t l, const BeginningGradient& to) {
         law.add_force_gradient(law_step, solution.positions, to);
         if (input_.law != l) return;
@@ -222,8 +176,7 @@ class WayBack {
     return input_.unscaled_law->grown(step.grown->tissue, {}, tensors);
   }
   [[nodiscard]] Vectors on_obstacles(const Step& step, const Iterate& at, const Vectors& by_end) const {
-    if (input_.parameters.empty() || std::ranges::count(at.on_obstacle, char{0}) == std::ssize(at.on_obstacle))
-      return {};
+    if (input_.parameters.empty() || !touches_obstacles(at)) return {};
     return solver_.unbalanced(step, at, by_end);
   }
   void add_parameters(const StepAdjoint& adjoint) {
