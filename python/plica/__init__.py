@@ -15,6 +15,7 @@ from .emulator import Emulator
 from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaError, ScenarioError
 from .experiments import reproduce
 from .indices import SobolIndices
+from .inference import Inference, infer
 from .labels import polygons_of_labels
 from .monolayers import polygons_of_monolayer, tissue_of_monolayer
 from .outlines import polygons_of_outlines
@@ -41,6 +42,7 @@ __all__ = [
     "Frame",
     "Frames",
     "GradientCheck",
+    "Inference",
     "MissingExtra",
     "NumericsError",
     "PlicaError",
@@ -61,6 +63,7 @@ __all__ = [
     "calibrate",
     "check_gradient",
     "compare",
+    "infer",
     "load",
     "movie",
     "open",
