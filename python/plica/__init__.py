@@ -16,6 +16,7 @@ from .errors import Diagnostic, FileError, MissingExtra, NumericsError, PlicaErr
 from .experiments import reproduce
 from .fits import Combination, Fit, Miss, fit
 from .indices import SobolIndices
+from .inference import Inference, infer
 from .labels import polygons_of_labels
 from .monolayers import polygons_of_monolayer, tissue_of_monolayer
 from .outlines import polygons_of_outlines
@@ -44,6 +45,7 @@ __all__ = [
     "Frame",
     "Frames",
     "GradientCheck",
+    "Inference",
     "Miss",
     "MissingExtra",
     "NumericsError",
@@ -66,6 +68,7 @@ __all__ = [
     "check_gradient",
     "compare",
     "fit",
+    "infer",
     "load",
     "movie",
     "open",

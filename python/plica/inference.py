@@ -1,0 +1,576 @@
+"""Inference of the strengths of cells from shapes (docs/how-to/gradients.md).
+
+Log factors of a law are Q v, with the eigenvectors Q of the Laplacian of the graph of its cells. Prior: coefficients v are
+independent, with precision (1 + length² eigenvalue) / spread², so neighbours correlate over a length. There, the misfit's Hessian
+is nearly diagonal and a smooth function of the eigenvalue. L-BFGS starts from this diagonal, which it learns from its own steps,
+and so takes few runs. The same approximation of the Hessian gives the weight of the prior, by its evidence (MacKay 1992), and
+the uncertainty.
+"""
+from __future__ import annotations
+
+import hashlib
+import math
+import os
+import sys
+import zipfile
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from statistics import NormalDist
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .arguments import number_from, path_of, text_of, texts_of, told, whole
+from .errors import FileError, NumericsError
+from .scenario import Scenario
+from .shape_targets import ApicalFaces, Target, target_of
+from .simulation import Simulation
+from .tapes import Tape, record
+
+__all__ = ["Inference", "infer"]
+
+Array = NDArray[np.float64]
+FIRST_SPREAD = 0.3  # prior standard deviation of log factors
+SPREADS = (0.03, 1.5)  # bounds of it
+COMMON_SPREAD = 1.0  # of the log of the common factor
+FIRST_CHANGE, LARGEST_CHANGE = 0.2, 0.7  # of a log factor in one iteration
+CONVERGED = 0.03  # mean squared distance from the minimum, in units of posterior variances
+CONVERGED_EARLY = 0.5  # the same while later shapes are not compared yet
+SLOW, SLOW_AFTER = 0.03, 5  # relative decrease of an iteration, after some, at which weights are adapted
+BAND_RATIO = 1.7  # of the ends of bands of eigenvectors that share a curvature
+
+
+class _Field:
+    """Log factors of one law: coefficients of the eigenvectors of the Laplacian of the graph of its cells."""
+
+    def __init__(self, simulation: Simulation, law: str, length_um: Optional[float]) -> None:
+        self.law = law
+        strength = simulation._core.strength(law)
+        self.acting = np.flatnonzero(strength)
+        if len(self.acting) == 0:
+            raise ValueError(f"of: {law} acts on no cell; choose another law")
+        self.cells = len(strength)
+        place = np.full(self.cells, -1)
+        place[self.acting] = np.arange(len(self.acting))
+        pairs = place[simulation.neighbours]
+        pairs = pairs[(pairs >= 0).all(axis=1)]
+        centres = np.stack([simulation.cell_data[f"{axis}_um"] for axis in "xyz"], axis=1)[self.acting]
+        apart = np.linalg.norm(centres[pairs[:, 0]] - centres[pairs[:, 1]], axis=1)
+        spacing = float(np.median(apart)) if len(apart) else 1.0
+        self.length_um = 2 * spacing if length_um is None else length_um
+        count = len(self.acting)
+        # On a square lattice of unit spacing this is the Laplace operator.
+        laplacian = np.zeros((count, count))
+        for a, b in (pairs.T, pairs.T[::-1]):
+            np.add.at(laplacian, (a, a), 2 * count / len(pairs))
+            np.add.at(laplacian, (a, b), -2 * count / len(pairs))
+        eigenvalues, self.vectors = np.linalg.eigh(laplacian)
+        self.is_common = eigenvalues < 1e-9
+        self.unit_precision = 1 + (self.length_um / spacing) ** 2 * eigenvalues
+        if not self.is_common.all():
+            self.unit_precision *= (1 / self.unit_precision[~self.is_common]).mean()
+        ends = [0, int(self.is_common.sum())]
+        while ends[-1] < count:
+            ends.append(min(count, max(ends[-1] + 2, int(BAND_RATIO * ends[-1]))))
+        self.band = np.searchsorted(ends, np.arange(count), side="right") - 1
+
+    def precision(self, spread: float) -> Array:
+        """Return the prior precision of the coefficients."""
+        return np.where(self.is_common, 1 / (len(self.acting) * COMMON_SPREAD**2), self.unit_precision / spread**2)
+
+
+class _Problem:
+    """Misfit of runs to targets, and its gradient by coefficients of the fields."""
+
+    def __init__(self, scenario: Scenario, fields: list[_Field], times_min: list[float], targets: list[Target], threads: int) -> None:
+        self.scenario, self.fields, self.times_min, self.targets, self.threads = scenario, fields, times_min, targets, threads
+        self.runs = 0
+
+    def logs(self, v: Array) -> list[Array]:
+        """Return log factors of acting cells of each law."""
+        return [field.vectors @ part for field, part in zip(self.fields, self.by_law(v))]
+
+    def by_law(self, values: Array) -> list[Array]:
+        return np.split(values, np.cumsum([len(field.acting) for field in self.fields])[:-1])
+
+    def factors(self, v: Array) -> dict[str, Array]:
+        """Return factors of all cells; 1 where a law does not act."""
+        found = {}
+        for field, log in zip(self.fields, self.logs(v)):
+            found[field.law] = np.ones(field.cells)
+            found[field.law][field.acting] = np.exp(log)
+        return found
+
+    def precision(self, spreads: Array) -> Array:
+        return np.concatenate([field.precision(spread) for field, spread in zip(self.fields, spreads)])
+
+    def run(self, v: Array, times: int) -> Tape:
+        """Record the run until the last of the first times."""
+        self.runs += 1
+        return record(self.scenario, at_min=self.times_min[:times], until_min=self.times_min[times - 1],
+                      strengths=self.factors(v), threads=self.threads)
+
+    def misfits(self, tape: Tape, times: int) -> Array:
+        """Return the sum of squared residuals at each of the first times."""
+        return np.array([target.misfit(tape.positions(time))[0] for time, target in zip(self.times_min[:times], self.targets)])
+
+    def gradient(self, tape: Tape, v: Array, times: int) -> Array:
+        """Return the gradient of half the misfit by coefficients."""
+        at = self.times_min[:times]
+        by_positions = np.stack([target.misfit(tape.positions(time))[1] for time, target in zip(at, self.targets)])
+        parts = []
+        for field, log in zip(self.fields, self.logs(v)):
+            by_factor = tape.gradient(by_positions / 2, of=field.law, by="cell", at_min=at, tolerance=1e-6)
+            parts.append(field.vectors.T @ (np.exp(log) * by_factor[field.acting]))
+        return np.concatenate(parts)
+
+    def counts(self, times: int) -> NDArray[np.int64]:
+        """Return the number of residuals at each of the first times."""
+        return np.array([target.count for target in self.targets[:times]])
+
+
+class _Descent:
+    """L-BFGS iterations of weight * misfit / 2 + sum(precision * v**2) / 2, weights of which may change in between."""
+
+    def __init__(self, problem: _Problem, spread: Optional[float]) -> None:
+        self.problem, self.given_spread = problem, spread
+        size = sum(len(field.acting) for field in problem.fields)
+        self.v = np.zeros(size)
+        self.spreads = np.full(len(problem.fields), FIRST_SPREAD if spread is None else spread)
+        self.weight = 1.0  # of the misfit; below 1 where it exceeds the noise
+        self.curvature = np.zeros(size)  # of half the misfit, learned for bands of eigenvectors
+        ends = np.cumsum([0] + [int(field.band[-1]) + 1 for field in problem.fields])
+        self.bands = np.concatenate([field.band + end for field, end in zip(problem.fields, ends)])
+        self.times = 0
+        self.is_measured = False  # curvature, by probes
+        self.converged = self._is_slow = False
+
+    def begin(self, times: int) -> None:
+        """Compare the first targets, from the present point."""
+        self.times = times
+        self.steps: list[Array] = []
+        self.changes: list[Array] = []  # of the gradient of half the misfit
+        tape = self.problem.run(self.v, times)
+        self.misfits = self.problem.misfits(tape, times)
+        self.slope = self.problem.gradient(tape, self.v, times)
+
+    @property
+    def precision(self) -> Array:
+        return self.problem.precision(self.spreads)
+
+    def value(self, v: Array, misfits: Array) -> float:
+        return 0.5 * self.weight * float(misfits.sum()) + 0.5 * float(self.precision @ v**2)
+
+    @property
+    def gradient(self) -> Array:
+        return self.weight * self.slope + self.precision * self.v
+
+    @property
+    def distance(self) -> float:
+        """Estimated mean squared distance from the minimum, in units of posterior variances."""
+        gradient = self.gradient
+        return float(gradient @ self.inverse_hessian(gradient)) / len(self.v) if self.steps else math.inf
+
+    def step(self) -> bool:
+        """Take one iteration. Returns whether it decreased the objective."""
+        gradient, value = self.gradient, self.value(self.v, self.misfits)
+        direction = -self.inverse_hessian(gradient)
+        largest = max(np.abs(log).max() for log in self.problem.logs(direction))
+        length = min(1.0, LARGEST_CHANGE / largest) if self.curvature.any() else FIRST_CHANGE / largest
+        downhill = float(gradient @ direction)
+        for _ in range(6):
+            v = self.v + length * direction
+            new_value = math.inf
+            try:
+                tape = self.problem.run(v, self.times)
+                misfits = self.problem.misfits(tape, self.times)
+                new_value = self.value(v, misfits)
+            except NumericsError:
+                pass
+            if new_value <= value + 1e-4 * length * downhill:
+                self._accept(v, misfits, self.problem.gradient(tape, v, self.times))
+                return True
+            # Minimum of a parabola through the values and the slope.
+            shorter = -0.5 * downhill * length**2 / (new_value - value - downhill * length)
+            length = min(max(shorter, 0.1 * length), 0.5 * length)
+        return False
+
+    def _accept(self, v: Array, misfits: Array, slope: Array) -> None:
+        step, change = v - self.v, slope - self.slope
+        if step @ (self.weight * change + self.precision * step) > 0:
+            self.steps.append(step)
+            self.changes.append(change)
+            if not self.is_measured:
+                self._learn_curvature()
+        self.v, self.misfits, self.slope = v, misfits, slope
+
+    def _learn_curvature(self) -> None:
+        """Set the curvature of each band from the changes of its gradients: an upper estimate."""
+        squares, changes = np.zeros((2, self.bands[-1] + 1))
+        for step, change in zip(self.steps, self.changes):
+            size = float(step @ step)
+            squares += np.bincount(self.bands, step**2) / size
+            changes += np.bincount(self.bands, change**2) / size
+        self.curvature = np.sqrt(changes / squares)[self.bands]
+
+    def inverse_hessian(self, q: Array) -> Array:
+        """Apply the L-BFGS approximation of the inverse Hessian to a vector, or to the columns of a matrix."""
+        q, precision, weights = q.copy(), self.precision, []
+        pairs = [(s, self.weight * y + precision * s) for s, y in zip(self.steps, self.changes)]
+        pairs = [(s, y) for s, y in pairs if s @ y > 0]
+        for s, y in reversed(pairs):
+            weights.append((s @ q) / (s @ y))
+            q -= np.multiply.outer(y, weights[-1])
+        q /= (self.weight * self.curvature + precision).reshape(-1, *[1] * (q.ndim - 1))
+        for (s, y), weight in zip(pairs, reversed(weights)):
+            q += np.multiply.outer(s, weight - (y @ q) / (s @ y))
+        return q
+
+    def known(self) -> list[Array]:
+        """Return by law how far each coefficient is known from the targets: 0 not at all, 1 from them only."""
+        curvature = self.weight * self.curvature
+        return self.problem.by_law(curvature / (curvature + self.precision))
+
+    def adapt(self) -> bool:
+        """Set the prior's spread by its evidence, and the misfit's weight if it exceeds the noise. Returns whether they changed."""
+        known = self.known()
+        before = np.append(self.spreads, self.weight**-0.5)
+        if self.given_spread is None:
+            for k, (field, v, of_law) in enumerate(zip(self.problem.fields, self.problem.by_law(self.v), known)):
+                varied = ~field.is_common
+                if varied.any():
+                    spread = math.sqrt(float(field.unit_precision[varied] @ v[varied]**2) / float(of_law[varied].sum()))
+                    self.spreads[k] = min(max(spread, SPREADS[0]), SPREADS[1])
+        free = self.problem.counts(self.times).sum() - sum(float(of_law.sum()) for of_law in known)
+        self.weight = min(1.0, max(free, 1.0) / float(self.misfits.sum()))
+        return bool(np.abs(np.log(np.append(self.spreads, self.weight**-0.5) / before)).max() > 0.1)
+
+    def probe(self, count: int) -> None:
+        """Measure the curvature of each band near the minimum, in random directions of about one standard deviation."""
+        rng = np.random.default_rng(0)
+        squares, products = np.zeros((2, self.bands[-1] + 1))
+        for _ in range(count):
+            step = rng.choice([-1.0, 1.0], len(self.v)) / np.sqrt(self.weight * self.curvature + self.precision)
+            tape = self.problem.run(self.v + step, self.times)
+            change = self.problem.gradient(tape, self.v + step, self.times) - self.slope
+            squares += np.bincount(self.bands, step**2)
+            products += np.bincount(self.bands, step * change)
+        self.curvature = np.maximum((products / squares)[self.bands], 1e-3 * self.curvature)
+        self.is_measured = True
+
+    def fit(self, most_runs: int, probes: int, after_step: Callable[[], None]) -> None:
+        """Iterate to the minimum: first for the first time alone, then with the next one, and so on."""
+        last = len(self.problem.targets)
+        for times in range(max(self.times, 1), last + 1):
+            self.begin(times)
+            while self.problem.runs < most_runs:
+                distance, value = self.distance, self.value(self.v, self.misfits)
+                if times < last and distance < CONVERGED_EARLY:
+                    break
+                if times == last and distance < CONVERGED_EARLY and probes and not self.is_measured:
+                    self.probe(probes)
+                    continue
+                if times == last and (distance < CONVERGED or self._is_slow):
+                    self._is_slow = False
+                    self.converged = not self.adapt() and distance < CONVERGED
+                    if self.converged:
+                        return
+                    continue
+                if not self.step():
+                    return
+                self._is_slow = len(self.steps) > SLOW_AFTER and self.value(self.v, self.misfits) > (1 - SLOW) * value
+                after_step()
+
+    def state(self) -> dict[str, Any]:
+        """Return what a later session continues from."""
+        return {"v": self.v, "spreads": self.spreads, "weight": self.weight, "curvature": self.curvature, "times": self.times,
+                "is_measured": self.is_measured, "runs": self.problem.runs}
+
+    def restore(self, state: Mapping[str, Any]) -> None:
+        self.v, self.spreads, self.curvature = (np.array(state[name]) for name in ("v", "spreads", "curvature"))
+        self.weight, self.is_measured = float(state["weight"]), bool(state["is_measured"])
+        self.times, self.problem.runs = int(state["times"]), int(state["runs"])
+
+
+@dataclass(frozen=True)
+class Inference:
+    """Factors on the strengths of cells that explain shapes; made by `infer`.
+
+    Shapes fix ratios of forces only. `factors` are therefore relative to their mean, over all laws; `scale` is that mean, which
+    has a meaning only as far as the stiffnesses and the drag of the scenario are measured.
+
+    Attributes
+    ----------
+    factors : dict of str to ndarray of float, shape (cells,)
+        Factor on the strength of each cell by law, with mean 1; NaN where the law does not act.
+    sd : dict of str to ndarray of float, shape (cells,)
+        Posterior standard deviation of the logarithms of factors, given prior, noise and model.
+    unseen : dict of str to ndarray of float, shape (cells,)
+        Part of the prior variance that remains: 0, known from the shapes; 1, not seen by them.
+    scale : float
+        Mean factor at the scenario's stiffnesses and drag.
+    times_min, misfit : ndarray of float, shape (times,)
+        Times, and root mean square residual at each in units of the noise: 1 where the model explains the shapes.
+    excess : float
+        Residuals in units of the noise, all times, 1 or more. Above 1: the noise is larger than `noise_um`, or the model does not fit; `sd` is larger accordingly.
+    spread : dict of str to float
+        Prior standard deviation of log factors by law, given or from its evidence.
+    length_um : dict of str to float
+        Length of the prior, µm.
+    runs : int
+        Recorded runs.
+    converged : bool
+        Whether the minimum was reached within `most_runs`.
+    """
+
+    factors: dict[str, Array]
+    sd: dict[str, Array]
+    unseen: dict[str, Array]
+    scale: float
+    times_min: Array
+    misfit: Array
+    excess: float
+    spread: dict[str, float]
+    length_um: dict[str, float]
+    runs: int
+    converged: bool
+
+    @property
+    def strengths(self) -> dict[str, Array]:
+        """Factors for ``plica.record``, not divided by their mean; 1 where a law does not act."""
+        return {law: np.where(np.isnan(factors), 1, self.scale * factors) for law, factors in self.factors.items()}
+
+    def interval(self, law: str, part: float = 0.9) -> tuple[Array, Array]:
+        """Return lower and upper ends of the central interval of each factor.
+
+        Parameters
+        ----------
+        law : str
+            A law of `factors`.
+        part : float
+            Probability of the interval.
+        """
+        if law not in self.factors:
+            raise ValueError(f"law: {told(law)}; choose one of {', '.join(self.factors)}")
+        inside = number_from(part, 0, "part", "a probability between 0 and 1", above=True)
+        if inside >= 1:
+            raise ValueError(f"part: {told(part)}; give a probability between 0 and 1")
+        wide = NormalDist().inv_cdf(0.5 + inside / 2) * self.sd[law]
+        return self.factors[law] * np.exp(-wide), self.factors[law] * np.exp(wide)
+
+    def __repr__(self) -> str:
+        lines = [f"Inference from {len(self.times_min)} times in {self.runs} runs" + ("" if self.converged else ", not converged")]
+        for law, factors in self.factors.items():
+            seen = float((self.unseen[law][np.isfinite(factors)] < 0.5).mean())
+            lines.append(f"{law}: factors {np.nanmin(factors):.2f} to {np.nanmax(factors):.2f} relative to the mean, "
+                         f"± {np.nanmedian(self.sd[law]):.1%}; {seen:.0%} of the cells seen by the shapes")
+        lines.append("misfit / noise: " + ", ".join(f"{one:.2f} at {time:g} min" for one, time in zip(self.misfit, self.times_min)))
+        lines.append(f"ratios only; mean factor {self.scale:.3g} if stiffnesses and drag are as in the scenario")
+        return "\n".join(lines)
+
+
+def infer(
+    scenario: Union[Scenario, str, os.PathLike[str], Mapping[str, Any]],
+    shapes: Mapping[float, Any],
+    *,
+    of: Union[str, Iterable[str]],
+    noise_um: float,
+    surface: str = "apical",
+    length_um: Optional[float] = None,
+    spread: Optional[float] = None,
+    most_runs: int = 60,
+    probes: int = 4,
+    file: Union[None, str, os.PathLike[str]] = None,
+    progress: bool = False,
+    threads: int = 1,
+) -> Inference:
+    """Infer the strengths of cells from shapes at one or several times.
+
+    Parameters
+    ----------
+    scenario : Scenario, str, path or mapping
+        The model: as for `record`. Its strengths are where the search begins.
+    shapes : mapping of float to shape
+        By time in minutes. A shape is an array of node positions, µm, of shape (nodes, 3), NaN where unknown, for the mesh of the
+        scenario; or, for any mesh, apical faces of cells in the order of ``Simulation.cell_data``: a `Frame`, `Polygons`, or a
+        mapping with ``centres_um`` of shape (cells, 3) and ``areas_um2`` of shape (cells,), NaN where unknown. With a shape at 0,
+        displacements and ratios of areas since then are compared; give it if the mesh is another one than that of the scenario.
+    of : str or iterable of str
+        Contractions or cortices (``"cortex.apical"``).
+    noise_um : float
+        Standard deviation of each coordinate of nodes or centres, µm. Areas have sqrt(2 area) times that.
+    surface : {"apical", "basal", "all"}
+        Nodes that are compared, for shapes of node positions.
+    length_um : float, optional
+        Distance over which log factors correlate a priori; by default two cells.
+    spread : float, optional
+        Prior standard deviation of log factors; by default that of largest evidence.
+    most_runs : int
+        Most recorded runs before the search ends.
+    probes : int
+        Runs of these for the curvature of the misfit, near the minimum. Without, `Inference.sd` is too small.
+    file : str or path, optional
+        File (``.npz``) of the search, written after each iteration; if it exists, the search continues from it.
+    progress : bool
+        Show a line per iteration on stderr.
+    threads : int
+        Threads per step.
+
+    Returns
+    -------
+    Inference
+
+    Raises
+    ------
+    ValueError
+        If a shape does not match the tissue, a law is unknown or has no strengths, or a law has no derivatives (see `record`).
+    NumericsError
+        If the scenario itself cannot be run.
+
+    Notes
+    -----
+    Maximum of the posterior for Gaussian noise and a Gaussian prior of log factors, by L-BFGS; intervals by Laplace's
+    approximation. A run that fails shortens a step. Shapes after a furrow closes are compared last, since earlier ones guide to them.
+
+    Examples
+    --------
+    >>> import numpy as np, plica
+    >>> block = plica.Scenario({"embryo": {"shape": "block", "length_um": 30, "width_um": 30, "cell_height_um": 10, "cells": [3, 3, 1]},
+    ...     "cortex": {"apical": {"region": "all", "tension_mN_per_m": 1}}, "time": {"end_s": 60}, "stop": {"at_equilibrium": False}})
+    >>> truth = np.array([0.8, 1, 1.2, 1, 1.3, 1, 0.7, 1, 1])
+    >>> shape = plica.record(block, strengths={"cortex.apical": truth}).positions()
+    >>> found = plica.infer(block, {1: shape}, of="cortex.apical", noise_um=0.01)
+    >>> bool(np.abs(found.factors["cortex.apical"] - truth / truth.mean()).max() < 0.05)
+    True
+    """
+    own = scenario.copy() if isinstance(scenario, Scenario) else Scenario(scenario)
+    noise = number_from(noise_um, 0, "noise_um", "a number above 0, in µm", above=True)
+    for value, name in ((length_um, "length_um"), (spread, "spread")):
+        if value is not None:
+            number_from(value, 0, name, "a number above 0", above=True)
+    simulation = Simulation(own, threads=threads)
+    laws = [simulation._label(law) for law in texts_of(of, "of")]
+    if not laws or len(set(laws)) < len(laws):
+        raise ValueError(f"of: {told(of)}; give one contraction or cortex, or several different ones")
+    times_min, targets = _targets(own, simulation, shapes, surface, noise)
+    problem = _Problem(own, [_Field(simulation, law, length_um) for law in laws], times_min, targets, whole(threads, "threads", 1, 1024))
+    descent = _Descent(problem, spread)
+    keep = None if file is None else _Kept(path_of(file, "file"), descent)
+    limit = whole(most_runs, "most_runs", 1)
+
+    def after_step() -> None:
+        if keep is not None:
+            keep.write()
+        if progress:
+            _tell(descent)
+
+    descent.fit(limit, whole(probes, "probes", 0), after_step)
+    return _result(descent)
+
+
+def _targets(scenario: Scenario, simulation: Simulation, shapes: Any, surface: str, noise_um: float) -> tuple[list[float], list[Target]]:
+    if not isinstance(shapes, Mapping) or not shapes:
+        raise TypeError(f"shapes: {told(shapes)}; give a mapping of times in minutes to shapes")
+    nodes, cells = len(simulation.positions), len(simulation.pressures)
+    start = record(scenario, until_min=1e-6)
+    faces = ApicalFaces(simulation, start._core.surface_nodes("apical"), cells)
+    compared = np.arange(nodes) if surface == "all" else start._core.surface_nodes(text_of(surface, "surface"))
+    by_time = {number_from(time, 0, "shapes", "times in minutes"): shape for time, shape in shapes.items()}
+    times_min = sorted(time for time in by_time if time > 0)
+    if not times_min:
+        raise ValueError("shapes: has no time after 0; give the shape at a later time")
+    if 60 * times_min[-1] > simulation._core.end_s:
+        raise ValueError(f"shapes: {times_min[-1]:g} min is after the end of the run, {simulation._core.end_s / 60:g} min; set a later "
+                         "time.end_min, or leave this shape out")
+    targets = [target_of(by_time[time], f"shapes[{time:g}]", faces, nodes, compared, noise_um) for time in times_min]
+    if 0 in by_time:
+        first = target_of(by_time[0], "shapes[0]", faces, nodes, compared, noise_um)
+        for time, target in zip(times_min, targets):
+            if type(first) is not type(target):
+                raise ValueError(f"shapes: that at 0 and that at {time:g} min are of different kinds; give both as nodes, or both as cells")
+            target.compare_changes_since(first, simulation.positions)
+    size = float(np.ptp(simulation.positions, axis=0).max())
+    for time, target in zip(times_min, targets):
+        apart = target.distance_um(simulation.positions)
+        if apart > size:
+            raise ValueError(f"shapes[{time:g}]: lies {apart:.3g} µm from the tissue of the scenario, which is {size:.3g} µm long; give "
+                             "it in µm and in the axes of the scenario")
+    return times_min, targets
+
+
+class _Kept:
+    """File of a search that a later session continues."""
+
+    def __init__(self, path: str, descent: _Descent) -> None:
+        self.path, self.descent = Path(path), descent
+        problem = descent.problem
+        told_apart = hashlib.sha256(problem.scenario.to_toml().encode())
+        for part in (*(field.law for field in problem.fields), *problem.times_min, descent.given_spread, *(field.length_um for field in problem.fields)):
+            told_apart.update(repr(part).encode())
+        for target in problem.targets:
+            told_apart.update(target.given().tobytes())
+        self.problem = told_apart.hexdigest()
+        if self.path.exists():
+            self._read()
+
+    def _read(self) -> None:
+        try:
+            with np.load(self.path) as state:
+                if str(state["problem"]) != self.problem:
+                    raise ValueError(f"file: {self.path} is of a search with another scenario, other shapes or settings; choose another file")
+                self.descent.restore(state)
+        except (OSError, KeyError, zipfile.BadZipFile) as error:
+            raise FileError(f"{self.path}: is no search of plica.infer, or damaged: {error}") from error
+
+    def write(self) -> None:
+        part = self.path.with_name(self.path.name + ".part")
+        try:
+            with open(part, "wb") as stream:
+                np.savez(stream, problem=self.problem, **self.descent.state())
+            os.replace(part, self.path)
+        except OSError as error:
+            raise FileError(f"{self.path}: cannot be written: {error.strerror}") from error
+
+
+def _tell(descent: _Descent) -> None:
+    times = descent.problem.times_min[: descent.times]
+    misfits = np.sqrt(descent.misfits / descent.problem.counts(descent.times))
+    sys.stderr.write(f"run {descent.problem.runs}: misfit / noise "
+                     + ", ".join(f"{misfit:.2f} at {time:g} min" for misfit, time in zip(misfits, times)) + "\n")
+
+
+def _result(descent: _Descent) -> Inference:
+    problem = descent.problem
+    logs = problem.logs(descent.v)
+    factors = np.exp(np.concatenate(logs))
+    scale = float(factors.mean())
+    covariance, prior = _covariances(descent, factors / factors.sum())
+    counts = problem.counts(descent.times)
+
+    def by_law(values: Array) -> dict[str, Array]:
+        found = {}
+        for field, part in zip(problem.fields, problem.by_law(values)):
+            found[field.law] = np.full(field.cells, np.nan)
+            found[field.law][field.acting] = part
+        return found
+
+    return Inference(
+        factors=by_law(factors / scale), sd=by_law(np.sqrt(covariance)), unseen=by_law(np.minimum(covariance / prior, 1)), scale=scale,
+        times_min=np.array(problem.times_min[: descent.times]), misfit=np.sqrt(descent.misfits / counts), excess=descent.weight**-0.5,
+        spread={field.law: float(one) for field, one in zip(problem.fields, descent.spreads)},
+        length_um={field.law: field.length_um for field in problem.fields}, runs=problem.runs, converged=descent.converged)
+
+
+def _covariances(descent: _Descent, parts: Array) -> tuple[Array, Array]:
+    """Return posterior and prior variances of the logarithm of each factor over the mean factor; `parts` are factors, of sum 1."""
+    fields = descent.problem.fields
+    vectors = np.zeros((len(parts), len(parts)))
+    first = 0
+    for field in fields:
+        last = first + len(field.acting)
+        vectors[first:last, first:last] = field.vectors
+        first = last
+    relative = vectors - parts @ vectors
+    return ((relative * descent.inverse_hessian(relative.T).T).sum(axis=1), (relative**2 / descent.precision).sum(axis=1))
