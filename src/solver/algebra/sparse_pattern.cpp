@@ -44,7 +44,7 @@ std::vector<int> elimination_order(const SparsePattern& lower) {
   };
   int result = order_them();
   if (result == METIS_ERROR) {
-    // While METIS works, it takes SIGTERM for an error of its own. If it succeeds now, somebody else sent the signal.
+    // While METIS works, it takes SIGTERM for an error of its own. If it succeeds now, the signal came from outside.
     result = order_them();
     if (result == METIS_OK) std::raise(SIGTERM);
   }
