@@ -10,6 +10,7 @@ SIZE = (440, 220)  # twice that on the page
 LAST = [(690, 50, 1000, 262), (690, 262, 1000, 520)]  # last time, from outside and in cross-section
 TIMES = [(406, 46, 594, 234), (798, 46, 986, 234)]     # third and last of five cross-sections
 PARTS = {
+    "bud": [(510, 50, 745, 210), (755, 50, 1000, 210)],
     "convergent-extension": [(20, 130, 180, 420), (420, 320, 1000, 460)],
     "division-demo": [(375, 50, 640, 280), (670, 50, 1000, 255)],
     "drosophila": LAST,

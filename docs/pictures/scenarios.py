@@ -229,6 +229,29 @@ def growing_disc():
     write(figure, "scenarios/growing-disc.png", colours=64)
 
 
+def bud():
+    """A concave sheet cut across at four times, on a membrane that is digested below the growing cells, and on an intact one."""
+    run, folder = run_of("bud"), RESULTS / "bud-intact"
+    if not (folder / "summary.json").is_file():
+        scenario = plica.Scenario("bud")
+        scenario["matrix.tip.program.activity"] = [1, 1]
+        plica.Simulation(scenario).run(out=folder, overwrite=True)
+    figure, axes = canvas(WIDTH, 520)
+    scale, end = 1.55, run.frames[-1].time_min
+    for y, frames, text in ((360, run.frames, "digested"), (100, plica.open(folder).frames, "intact")):
+        for column, time in enumerate((0, 30, 60, end)):
+            frame, x = frames.at(time), 128 + 248 * column
+            colours = np.where(of_cells(frame, "region_tip")[:, None] > 0, to_rgb(DAUGHTER), to_rgb(CELL))
+            pieces = cut(frame.points, frame.hexahedra, frame.cell_data["cell_id"].astype(int), 0, 0.01)
+            draw_cut(axes, *pieces, colours, 0.9, placed((x, y + 60), scale))
+            if text == "digested":
+                label(axes, (x, 495), minutes(frame), size=LETTERS, weight="bold")
+        label(axes, (128, y + 5), f"{text} membrane", size=LETTERS - 8)
+    bar(axes, 30, 24, 50, scale)
+    label(axes, (860, 30), "growing cells", DAUGHTER, size=LETTERS - 2, weight="bold")
+    write(figure, "scenarios/bud.png", colours=64)
+
+
 def convergent_extension():
     """A sheet that narrows and lengthens, from above at four times; cells of the middle are marked."""
     run = run_of("convergent-extension")
@@ -318,6 +341,7 @@ PICTURES = {
     "furrow-slice": partial(sections, "furrow-slice", (0, 9, 12, 15, 20), 50, 0.98),
     "wing-disc": wing_disc,
     "growing-disc": growing_disc,
+    "bud": bud,
     "convergent-extension": convergent_extension,
     "germ-band": germ_band,
     "division-demo": division_demo,
