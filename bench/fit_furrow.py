@@ -13,8 +13,8 @@ import plica
 
 TRUTH = {"cortex.apical.tension_mN_per_m": 1.4, "cortex.apical.saturation_ratio": 0.16, "cortex.apical.profile.sigma_cells": 4.469,
          "cortex.shortening.tension_mN_per_m": 0.45, "cortex.floor.stiffness_mN_per_m": 0.7,
-         "cortex.floor-elsewhere.stiffness_mN_per_m": 0.3, "cortex.floor-elsewhere.relaxation_min": 15,
-         "cortex.surface.stiffness_mN_per_m": 0.02, "cortex.surface.relaxation_min": 6, "cortex.walls.stiffness_mN_per_m": 0.02,
+         "cortex.floor-elsewhere.stiffness_mN_per_m": 0.3, "cortex.floor-elsewhere.relaxation_s": 900,
+         "cortex.surface.stiffness_mN_per_m": 0.02, "cortex.surface.relaxation_s": 360, "cortex.walls.stiffness_mN_per_m": 0.02,
          "cortex.walls.tension_mN_per_m": 0.015, "elasticity.young_modulus_Pa": 5}
 BANDS = {"mid": [0, 10], "outer": [15, 35], "flank": [60, 110]}  # degrees from the ventral midline
 WIDTHS = {"position_um": 0.5, "depth_um": 0.5, "area_ratio": 0.02, "area_um2": 1}
