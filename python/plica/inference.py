@@ -2,9 +2,11 @@
 
 Log factors of a law are Q v, with the eigenvectors Q of the Laplacian of the graph of its cells. Prior: coefficients v are
 independent, with precision (1 + length² eigenvalue) / spread², so neighbours correlate over a length. There, the misfit's Hessian
-is nearly diagonal and a smooth function of the eigenvalue. L-BFGS starts from this diagonal, which it learns from its own steps,
-and so takes few runs. The same approximation of the Hessian gives the weight of the prior, by its evidence (MacKay 1992), and
-the uncertainty.
+is nearly diagonal and a smooth function of the eigenvalue: L-BFGS starts from this diagonal, and so takes few runs.
+
+Gradients g of sums of residuals with random weights have the mean of g gᵀ equal to the Gauss-Newton Hessian. A few of them give its
+diagonal, averaged over bands of eigenvectors, and its differences from cell to cell, averaged over neighbours. From this follow the
+weight of the prior, by its evidence (MacKay 1992), and the uncertainty.
 """
 from __future__ import annotations
 
@@ -35,11 +37,13 @@ Array = NDArray[np.float64]
 FIRST_SPREAD = 0.3  # prior standard deviation of log factors
 SPREADS = (0.03, 1.5)  # bounds of it
 COMMON_SPREAD = 1.0  # of the log of the common factor
-FIRST_CHANGE, LARGEST_CHANGE = 0.2, 0.7  # of a log factor in one iteration
-CONVERGED = 0.03  # mean squared distance from the minimum, in units of posterior variances
+LARGEST_CHANGE = 0.7  # of a log factor in one iteration
+CONVERGED = 0.003  # mean squared distance from the minimum, in units of posterior variances; an estimate, low by up to a factor of 5
 CONVERGED_EARLY = 0.5  # the same while later shapes are not compared yet
 SLOW, SLOW_AFTER = 0.03, 5  # relative decrease of an iteration, after some, at which weights are adapted
-BAND_RATIO = 1.7  # of the ends of bands of eigenvectors that share a curvature
+MOST_ADAPTED = 20  # times that weights are adapted at one point
+TINY = float(np.finfo(float).tiny)
+FIRST_BAND, BAND_RATIO = 4, 1.7  # size of the first band of eigenvectors that share a curvature, and ratio of the ends of others
 
 
 class _Field:
@@ -56,6 +60,7 @@ class _Field:
         place[self.acting] = np.arange(len(self.acting))
         pairs = place[simulation.neighbours]
         pairs = pairs[(pairs >= 0).all(axis=1)]
+        self.pairs = pairs
         centres = np.stack([simulation.cell_data[f"{axis}_um"] for axis in "xyz"], axis=1)[self.acting]
         apart = np.linalg.norm(centres[pairs[:, 0]] - centres[pairs[:, 1]], axis=1)
         spacing = float(np.median(apart)) if len(apart) else 1.0
@@ -64,17 +69,29 @@ class _Field:
         # On a square lattice of unit spacing this is the Laplace operator.
         laplacian = np.zeros((count, count))
         for a, b in (pairs.T, pairs.T[::-1]):
-            np.add.at(laplacian, (a, a), 2 * count / len(pairs))
-            np.add.at(laplacian, (a, b), -2 * count / len(pairs))
+            np.add.at(laplacian, (a, a), 2 * count / max(len(pairs), 1))
+            np.add.at(laplacian, (a, b), -2 * count / max(len(pairs), 1))
         eigenvalues, self.vectors = np.linalg.eigh(laplacian)
         self.is_common = eigenvalues < 1e-9
         self.unit_precision = 1 + (self.length_um / spacing) ** 2 * eigenvalues
         if not self.is_common.all():
             self.unit_precision *= (1 / self.unit_precision[~self.is_common]).mean()
-        ends = [0, int(self.is_common.sum())]
+        ends = [0, min(FIRST_BAND, count)]
         while ends[-1] < count:
-            ends.append(min(count, max(ends[-1] + 2, int(BAND_RATIO * ends[-1]))))
+            ends.append(min(count, int(BAND_RATIO * ends[-1])))
         self.band = np.searchsorted(ends, np.arange(count), side="right") - 1
+
+    def band_means(self, squares: Array) -> Array:
+        """Return for each coefficient the mean over its band."""
+        return (np.bincount(self.band, squares) / np.bincount(self.band))[self.band]
+
+    def near_means(self, squares: Array) -> Array:
+        """Return for each acting cell the mean over itself and its neighbours."""
+        sums, counts = squares.copy(), np.ones(len(squares))
+        for a, b in (self.pairs.T, self.pairs.T[::-1]):
+            np.add.at(sums, a, squares[b])
+            np.add.at(counts, a, 1)
+        return np.asarray(sums / counts)
 
     def precision(self, spread: float) -> Array:
         """Return the prior precision of the coefficients."""
@@ -116,15 +133,21 @@ class _Problem:
         """Return the sum of squared residuals at each of the first times."""
         return np.array([target.misfit(tape.positions(time))[0] for time, target in zip(self.times_min[:times], self.targets)])
 
+    def by_logs(self, tape: Tape, v: Array, by_positions: Array) -> list[Array]:
+        """Return the gradient by log factors of acting cells of each law, from that by positions at the first times."""
+        at = self.times_min[: len(by_positions)]
+        return [np.exp(log) * tape.gradient(by_positions, of=field.law, by="cell", at_min=at, tolerance=1e-6)[field.acting]
+                for field, log in zip(self.fields, self.logs(v))]
+
     def gradient(self, tape: Tape, v: Array, times: int) -> Array:
         """Return the gradient of half the misfit by coefficients."""
-        at = self.times_min[:times]
-        by_positions = np.stack([target.misfit(tape.positions(time))[1] for time, target in zip(at, self.targets)])
-        parts = []
-        for field, log in zip(self.fields, self.logs(v)):
-            by_factor = tape.gradient(by_positions / 2, of=field.law, by="cell", at_min=at, tolerance=1e-6)
-            parts.append(field.vectors.T @ (np.exp(log) * by_factor[field.acting]))
-        return np.concatenate(parts)
+        by_positions = np.stack([target.misfit(tape.positions(time))[1] for time, target in zip(self.times_min[:times], self.targets)])
+        return np.concatenate([field.vectors.T @ part for field, part in zip(self.fields, self.by_logs(tape, v, by_positions / 2))])
+
+    def probe(self, tape: Tape, v: Array, times: int, rng: np.random.Generator) -> list[Array]:
+        """Return the gradient by log factors of a sum of residuals with independent normal weights."""
+        return self.by_logs(tape, v, np.stack([
+            target.probe(tape.positions(time), rng) for time, target in zip(self.times_min[:times], self.targets)]))
 
     def counts(self, times: int) -> NDArray[np.int64]:
         """Return the number of residuals at each of the first times."""
@@ -134,17 +157,13 @@ class _Problem:
 class _Descent:
     """L-BFGS iterations of weight * misfit / 2 + sum(precision * v**2) / 2, weights of which may change in between."""
 
-    def __init__(self, problem: _Problem, spread: Optional[float]) -> None:
-        self.problem, self.given_spread = problem, spread
+    def __init__(self, problem: _Problem, spread: Optional[float], probes: int) -> None:
+        self.problem, self.given_spread, self.probes = problem, spread, probes
         size = sum(len(field.acting) for field in problem.fields)
         self.v = np.zeros(size)
         self.spreads = np.full(len(problem.fields), FIRST_SPREAD if spread is None else spread)
         self.weight = 1.0  # of the misfit; below 1 where it exceeds the noise
-        self.curvature = np.zeros(size)  # of half the misfit, learned for bands of eigenvectors
-        ends = np.cumsum([0] + [int(field.band[-1]) + 1 for field in problem.fields])
-        self.bands = np.concatenate([field.band + end for field, end in zip(problem.fields, ends)])
         self.times = 0
-        self.is_measured = False  # curvature, by probes
         self.converged = self._is_slow = False
 
     def begin(self, times: int) -> None:
@@ -152,9 +171,22 @@ class _Descent:
         self.times = times
         self.steps: list[Array] = []
         self.changes: list[Array] = []  # of the gradient of half the misfit
-        tape = self.problem.run(self.v, times)
-        self.misfits = self.problem.misfits(tape, times)
-        self.slope = self.problem.gradient(tape, self.v, times)
+        self.tape = self.problem.run(self.v, times)
+        self.misfits = self.problem.misfits(self.tape, times)
+        self.slope = self.problem.gradient(self.tape, self.v, times)
+        self.probe()
+
+    def probe(self) -> None:
+        """Estimate the Gauss-Newton Hessian of half the misfit at the present point."""
+        rng = np.random.default_rng(0)
+        probes = [self.problem.probe(self.tape, self.v, self.times, rng) for _ in range(self.probes)]
+        fields, by_law = self.problem.fields, [np.array(ones).T for ones in zip(*probes)]
+        self.curvature = np.concatenate([  # diagonal in coefficients
+            field.band_means(((field.vectors.T @ g) ** 2).mean(axis=1)) for field, g in zip(fields, by_law)])
+        # How well each cell is seen, and the diagonal if all were seen equally.
+        self.seen = [np.sqrt(np.maximum(field.near_means((g**2).mean(axis=1)), TINY)) for field, g in zip(fields, by_law)]
+        self.equal_curvature = [field.band_means(((field.vectors.T @ (g / seen[:, None])) ** 2).mean(axis=1))
+                                for field, g, seen in zip(fields, by_law, self.seen)]
 
     @property
     def precision(self) -> Array:
@@ -171,14 +203,14 @@ class _Descent:
     def distance(self) -> float:
         """Estimated mean squared distance from the minimum, in units of posterior variances."""
         gradient = self.gradient
-        return float(gradient @ self.inverse_hessian(gradient)) / len(self.v) if self.steps else math.inf
+        return float(gradient @ self.inverse_hessian(gradient)) / len(self.v)
 
     def step(self) -> bool:
         """Take one iteration. Returns whether it decreased the objective."""
         gradient, value = self.gradient, self.value(self.v, self.misfits)
         direction = -self.inverse_hessian(gradient)
         largest = max(np.abs(log).max() for log in self.problem.logs(direction))
-        length = min(1.0, LARGEST_CHANGE / largest) if self.curvature.any() else FIRST_CHANGE / largest
+        length = min(1.0, LARGEST_CHANGE / largest)
         downhill = float(gradient @ direction)
         for _ in range(6):
             v = self.v + length * direction
@@ -190,6 +222,7 @@ class _Descent:
             except NumericsError:
                 pass
             if new_value <= value + 1e-4 * length * downhill:
+                self.tape = tape
                 self._accept(v, misfits, self.problem.gradient(tape, v, self.times))
                 return True
             # Minimum of a parabola through the values and the slope.
@@ -202,30 +235,19 @@ class _Descent:
         if step @ (self.weight * change + self.precision * step) > 0:
             self.steps.append(step)
             self.changes.append(change)
-            if not self.is_measured:
-                self._learn_curvature()
         self.v, self.misfits, self.slope = v, misfits, slope
 
-    def _learn_curvature(self) -> None:
-        """Set the curvature of each band from the changes of its gradients: an upper estimate."""
-        squares, changes = np.zeros((2, self.bands[-1] + 1))
-        for step, change in zip(self.steps, self.changes):
-            size = float(step @ step)
-            squares += np.bincount(self.bands, step**2) / size
-            changes += np.bincount(self.bands, change**2) / size
-        self.curvature = np.sqrt(changes / squares)[self.bands]
-
     def inverse_hessian(self, q: Array) -> Array:
-        """Apply the L-BFGS approximation of the inverse Hessian to a vector, or to the columns of a matrix."""
+        """Apply the L-BFGS approximation of the inverse Hessian."""
         q, precision, weights = q.copy(), self.precision, []
         pairs = [(s, self.weight * y + precision * s) for s, y in zip(self.steps, self.changes)]
         pairs = [(s, y) for s, y in pairs if s @ y > 0]
         for s, y in reversed(pairs):
             weights.append((s @ q) / (s @ y))
-            q -= np.multiply.outer(y, weights[-1])
-        q /= (self.weight * self.curvature + precision).reshape(-1, *[1] * (q.ndim - 1))
+            q -= weights[-1] * y
+        q /= self.weight * self.curvature + precision
         for (s, y), weight in zip(pairs, reversed(weights)):
-            q += np.multiply.outer(s, weight - (y @ q) / (s @ y))
+            q += (weight - (y @ q) / (s @ y)) * s
         return q
 
     def known(self) -> list[Array]:
@@ -240,57 +262,43 @@ class _Descent:
         if self.given_spread is None:
             for k, (field, v, of_law) in enumerate(zip(self.problem.fields, self.problem.by_law(self.v), known)):
                 varied = ~field.is_common
-                if varied.any():
+                if of_law[varied].sum() > 0:
                     spread = math.sqrt(float(field.unit_precision[varied] @ v[varied]**2) / float(of_law[varied].sum()))
                     self.spreads[k] = min(max(spread, SPREADS[0]), SPREADS[1])
         free = self.problem.counts(self.times).sum() - sum(float(of_law.sum()) for of_law in known)
-        self.weight = min(1.0, max(free, 1.0) / float(self.misfits.sum()))
+        self.weight = min(1.0, max(free, 1.0) / max(float(self.misfits.sum()), TINY))
         return bool(np.abs(np.log(np.append(self.spreads, self.weight**-0.5) / before)).max() > 0.1)
 
-    def probe(self, count: int) -> None:
-        """Measure the curvature of each band near the minimum, in random directions of about one standard deviation."""
-        rng = np.random.default_rng(0)
-        squares, products = np.zeros((2, self.bands[-1] + 1))
-        for _ in range(count):
-            step = rng.choice([-1.0, 1.0], len(self.v)) / np.sqrt(self.weight * self.curvature + self.precision)
-            tape = self.problem.run(self.v + step, self.times)
-            change = self.problem.gradient(tape, self.v + step, self.times) - self.slope
-            squares += np.bincount(self.bands, step**2)
-            products += np.bincount(self.bands, step * change)
-        self.curvature = np.maximum((products / squares)[self.bands], 1e-3 * self.curvature)
-        self.is_measured = True
-
-    def fit(self, most_runs: int, probes: int, after_step: Callable[[], None]) -> None:
+    def fit(self, most_runs: int, after_step: Callable[[], None]) -> None:
         """Iterate to the minimum: first for the first time alone, then with the next one, and so on."""
         last = len(self.problem.targets)
         for times in range(max(self.times, 1), last + 1):
             self.begin(times)
+            adapted = 0  # times since the last step
             while self.problem.runs < most_runs:
                 distance, value = self.distance, self.value(self.v, self.misfits)
                 if times < last and distance < CONVERGED_EARLY:
                     break
-                if times == last and distance < CONVERGED_EARLY and probes and not self.is_measured:
-                    self.probe(probes)
-                    continue
                 if times == last and (distance < CONVERGED or self._is_slow):
                     self._is_slow = False
-                    self.converged = not self.adapt() and distance < CONVERGED
+                    self.converged = (not self.adapt() or adapted == MOST_ADAPTED) and distance < CONVERGED
                     if self.converged:
-                        return
+                        break
+                    adapted += 1
                     continue
                 if not self.step():
-                    return
+                    break
+                adapted = 0
                 self._is_slow = len(self.steps) > SLOW_AFTER and self.value(self.v, self.misfits) > (1 - SLOW) * value
                 after_step()
+        self.probe()
 
     def state(self) -> dict[str, Any]:
         """Return what a later session continues from."""
-        return {"v": self.v, "spreads": self.spreads, "weight": self.weight, "curvature": self.curvature, "times": self.times,
-                "is_measured": self.is_measured, "runs": self.problem.runs}
+        return {"v": self.v, "spreads": self.spreads, "weight": self.weight, "times": self.times, "runs": self.problem.runs}
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        self.v, self.spreads, self.curvature = (np.array(state[name]) for name in ("v", "spreads", "curvature"))
-        self.weight, self.is_measured = float(state["weight"]), bool(state["is_measured"])
+        self.v, self.spreads, self.weight = np.array(state["v"]), np.array(state["spreads"]), float(state["weight"])
         self.times, self.problem.runs = int(state["times"]), int(state["runs"])
 
 
@@ -314,7 +322,8 @@ class Inference:
     times_min, misfit : ndarray of float, shape (times,)
         Times, and root mean square residual at each in units of the noise: 1 where the model explains the shapes.
     excess : float
-        Residuals in units of the noise, all times, 1 or more. Above 1: the noise is larger than `noise_um`, or the model does not fit; `sd` is larger accordingly.
+        Residuals in units of the noise, all times, 1 or more. Above 1: the noise is larger than `noise_um`, or the model does
+        not fit; `sd` is larger accordingly.
     spread : dict of str to float
         Prior standard deviation of log factors by law, given or from its evidence.
     length_um : dict of str to float
@@ -381,7 +390,7 @@ def infer(
     length_um: Optional[float] = None,
     spread: Optional[float] = None,
     most_runs: int = 60,
-    probes: int = 4,
+    probes: int = 6,
     file: Union[None, str, os.PathLike[str]] = None,
     progress: bool = False,
     threads: int = 1,
@@ -410,7 +419,8 @@ def infer(
     most_runs : int
         Most recorded runs before the search ends.
     probes : int
-        Runs of these for the curvature of the misfit, near the minimum. Without, `Inference.sd` is too small.
+        Gradients for the curvature of the misfit, at the beginning of each stage of the search and at its end. More make
+        `Inference.sd` and `Inference.unseen` more accurate: relative error of a variance about 1 / sqrt(3 probes).
     file : str or path, optional
         File (``.npz``) of the search, written after each iteration; if it exists, the search continues from it.
     progress : bool
@@ -456,7 +466,7 @@ def infer(
         raise ValueError(f"of: {told(of)}; give one contraction or cortex, or several different ones")
     times_min, targets = _targets(own, simulation, shapes, surface, noise)
     problem = _Problem(own, [_Field(simulation, law, length_um) for law in laws], times_min, targets, whole(threads, "threads", 1, 1024))
-    descent = _Descent(problem, spread)
+    descent = _Descent(problem, spread, whole(probes, "probes", 1))
     keep = None if file is None else _Kept(path_of(file, "file"), descent)
     limit = whole(most_runs, "most_runs", 1)
 
@@ -466,7 +476,7 @@ def infer(
         if progress:
             _tell(descent)
 
-    descent.fit(limit, whole(probes, "probes", 0), after_step)
+    descent.fit(limit, after_step)
     return _result(descent)
 
 
@@ -507,7 +517,8 @@ class _Kept:
         self.path, self.descent = Path(path), descent
         problem = descent.problem
         told_apart = hashlib.sha256(problem.scenario.to_toml().encode())
-        for part in (*(field.law for field in problem.fields), *problem.times_min, descent.given_spread, *(field.length_um for field in problem.fields)):
+        laws = [(field.law, field.length_um) for field in problem.fields]
+        for part in (*laws, *problem.times_min, descent.given_spread):
             told_apart.update(repr(part).encode())
         for target in problem.targets:
             told_apart.update(target.given().tobytes())
@@ -517,12 +528,13 @@ class _Kept:
 
     def _read(self) -> None:
         try:
-            with np.load(self.path) as state:
-                if str(state["problem"]) != self.problem:
-                    raise ValueError(f"file: {self.path} is of a search with another scenario, other shapes or settings; choose another file")
-                self.descent.restore(state)
-        except (OSError, KeyError, zipfile.BadZipFile) as error:
-            raise FileError(f"{self.path}: is no search of plica.infer, or damaged: {error}") from error
+            with np.load(self.path) as stored:
+                state = {name: stored[name] for name in ("problem", *self.descent.state())}
+        except (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
+            raise FileError(f"{self.path}: is damaged, or not of a search by plica.infer; choose another file ({error})") from error
+        if str(state["problem"]) != self.problem:
+            raise ValueError(f"file: {self.path} is of a search with another scenario, other shapes or settings; choose another file")
+        self.descent.restore(state)
 
     def write(self) -> None:
         part = self.path.with_name(self.path.name + ".part")
@@ -546,7 +558,7 @@ def _result(descent: _Descent) -> Inference:
     logs = problem.logs(descent.v)
     factors = np.exp(np.concatenate(logs))
     scale = float(factors.mean())
-    covariance, prior = _covariances(descent, factors / factors.sum())
+    covariance, prior = _variances(descent, factors / factors.sum())
     counts = problem.counts(descent.times)
 
     def by_law(values: Array) -> dict[str, Array]:
@@ -563,14 +575,15 @@ def _result(descent: _Descent) -> Inference:
         length_um={field.law: field.length_um for field in problem.fields}, runs=problem.runs, converged=descent.converged)
 
 
-def _covariances(descent: _Descent, parts: Array) -> tuple[Array, Array]:
+def _variances(descent: _Descent, parts: Array) -> tuple[Array, Array]:
     """Return posterior and prior variances of the logarithm of each factor over the mean factor; `parts` are factors, of sum 1."""
-    fields = descent.problem.fields
-    vectors = np.zeros((len(parts), len(parts)))
-    first = 0
-    for field in fields:
-        last = first + len(field.acting)
-        vectors[first:last, first:last] = field.vectors
-        first = last
-    relative = vectors - parts @ vectors
-    return ((relative * descent.inverse_hessian(relative.T).T).sum(axis=1), (relative**2 / descent.precision).sum(axis=1))
+    size, first = len(parts), 0
+    posterior, prior = np.zeros((2, size, size))
+    of_laws = zip(descent.problem.fields, descent.problem.by_law(descent.precision), descent.equal_curvature, descent.seen)
+    for field, precision, curvature, seen in of_laws:
+        law = slice(first, first := first + len(field.acting))
+        data = (field.vectors * curvature) @ field.vectors.T * np.outer(seen, seen)
+        posterior[law, law] = np.linalg.inv(descent.weight * data + (field.vectors * precision) @ field.vectors.T)
+        prior[law, law] = (field.vectors / precision) @ field.vectors.T
+    found = [np.diag(one) - 2 * one @ parts + parts @ one @ parts for one in (posterior, prior)]
+    return found[0], found[1]

@@ -93,6 +93,10 @@ class NodeTarget:
         """Return all numbers of the target."""
         return np.append(self.positions, self.noise_um)
 
+    def probe(self, positions: Array, rng: np.random.Generator) -> Array:
+        """Return the gradient by positions of a sum of residuals in units of their noise, with independent normal weights."""
+        return np.where(self.seen, rng.standard_normal(positions.shape), 0) / self.noise_um
+
     def misfit(self, positions: Array) -> tuple[float, Array]:
         """Return the sum of squared residuals in units of their noise, and its gradient by positions."""
         apart = np.where(self.seen, positions - self.positions, 0) / self.noise_um
@@ -127,6 +131,12 @@ class CellTarget:
     def given(self) -> Array:
         """Return all numbers of the target."""
         return np.concatenate([self.centres.ravel(), self.areas, [self.noise_um]])
+
+    def probe(self, positions: Array, rng: np.random.Generator) -> Array:
+        """Return the gradient by positions of a sum of residuals in units of their noise, with independent normal weights."""
+        self.faces.of(positions)
+        return self.faces.pull_back(np.where(self.seen, rng.standard_normal(self.seen.shape), 0) / self.noise_um,
+                                    np.where(self.seen_areas, rng.standard_normal(self.seen_areas.shape), 0) / self.area_noise)
 
     def misfit(self, positions: Array) -> tuple[float, Array]:
         """Return the sum of squared residuals in units of their noise, and its gradient by positions."""
