@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the figures of docs/science/four-studies.md and prints its numbers, from studies that have been run.
+"""Draws the figures of docs/developers/four-studies.md and prints its numbers, from studies that have been run.
 
 Usage, with a Python that has plica[study]: figures.py STUDIED IMAGES, where STUDIED holds the results of paper-noise, paper-sobol,
 paper-phase and slice-phase (plica study docs/science/studies/NAME.toml --out STUDIED/NAME). The posterior runs 80 embryos by itself.
