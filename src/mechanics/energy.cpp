@@ -59,18 +59,15 @@ std::vector<EnergyFlow> energy_flows(const Model& model, const State& before, co
     flows.push_back(model.laws[l]->energy_flow(completed));
   }
   flows.emplace_back();
-  if (!model.volumes.is_held()) return flows;
-  if (!model.growths.empty() || cells_grow(model, before.internals, before.time_s))
+  if (model.volumes.is_held() && (!model.growths.empty() || cells_grow(model, before.internals, before.time_s)))
     flows.back().active = work_of_pressures(model, before, after);
-  else if (before.exchanges.until_s == before.time_s)
-    flows.back().stored = -work_of_pressures(model, before, after);
   return flows;
 }
 
 std::vector<std::string> energy_labels(const Model& model) {
   std::vector<std::string> labels;
   for (const auto& law : model.laws) labels.push_back(law->label());
-  labels.emplace_back("volumes");
+  labels.emplace_back("growth");
   return labels;
 }
 

@@ -16,20 +16,22 @@ double area_at_rest(const Tissue& tissue, const Face& face) {
   return facet_area(corners);
 }
 
-// Unit normal of a face in the rest shape of its cell: reference positions mean nothing after an exchange of
-// neighbours. By reference positions where the face is a part of one of the cell's elements.
+// Unit normal of a face in the rest shape of a cell that has it as a face of one element: reference positions mean
+// nothing after an exchange of neighbours. By them where a face is cut in both cells.
 Vec3 rest_normal(const Tissue& tissue, const Face& face) {
-  const Cell& cell = tissue.cells[face.cell.index()];
-  for (int i = 0; i < cell.element_count; ++i) {
-    const std::size_t e = cell.first_element.index() + static_cast<std::size_t>(i);
-    const auto& nodes = tissue.elements[e];
-    std::array<std::ptrdiff_t, 4> places;
-    std::ranges::transform(face.nodes, places.begin(),
-                           [&](NodeId node) { return std::ranges::find(nodes, node) - nodes.begin(); });
-    if (std::ranges::count(places, std::ssize(nodes)) > 0) continue;
-    std::array<Vec3, 4> corners;
-    for (int k = 0; k < 4; ++k) corners[k] = tissue.element_rest_shape[e][static_cast<std::size_t>(places[k])];
-    return facet_area_vector(corners).normalized();
+  for (const CellId of : {face.cell, face.beyond.value_or(face.cell)}) {
+    const Cell& cell = tissue.cells[of.index()];
+    for (int i = 0; i < cell.element_count; ++i) {
+      const std::size_t e = cell.first_element.index() + static_cast<std::size_t>(i);
+      const auto& nodes = tissue.elements[e];
+      std::array<std::ptrdiff_t, 4> places;
+      std::ranges::transform(face.nodes, places.begin(),
+                             [&](NodeId node) { return std::ranges::find(nodes, node) - nodes.begin(); });
+      if (std::ranges::count(places, std::ssize(nodes)) > 0) continue;
+      std::array<Vec3, 4> corners;
+      for (int k = 0; k < 4; ++k) corners[k] = tissue.element_rest_shape[e][static_cast<std::size_t>(places[k])];
+      return facet_area_vector(corners).normalized();
+    }
   }
   return facet_area_vector(gather(tissue.rest_positions, face.nodes)).normalized();
 }

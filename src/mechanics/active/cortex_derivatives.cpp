@@ -150,6 +150,8 @@ void Cortex::add_internal_gradient(const Step& step, std::span<const double> nex
     seen.internal = activation_of(step.internal);
     activation_.add_gradient(seen, activation_of(next), activation_of(adjoint), positions,
                              {gradient.ahead, gradient.previous, gradient.earlier, activation_of(gradient.internal)});
+    const std::span<const double> of_before = memory(adjoint).activation_before;
+    for (std::size_t c = 0; c < of_before.size(); ++c) activation_of(gradient.internal)[c] += of_before[c];
   }
   if (!flows()) return;
   const double r = step.rate_s / rule_.relaxation_s;
