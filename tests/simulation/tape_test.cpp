@@ -179,6 +179,8 @@ TEST(Tape, GradientsOfAFurrowBeforeContactAgreeWithDifferences) {
 
 // Through closure, where the slope changes its sign. Between the noise of steps that rounding ends early and the
 // outcome's curvature, differences are no better than 1e-5.
+// Both ways differentiate pairs by differences over 1e-5 um, along other directions, and closure amplifies their
+// rounding.
 TEST(Tape, GradientsOfAFurrowInContactAgreeWithDifferences) {
   expect_gradient({find_scenario("furrow-slice"),
                    {"time.tolerance_um=0.005", "embryo.mirror=[\"y\"]"},
@@ -187,7 +189,8 @@ TEST(Tape, GradientsOfAFurrowInContactAgreeWithDifferences) {
                    1200,
                    {},
                    1e-4,
-                   1e-4});
+                   1e-4,
+                   2e-6});
 }
 
 TEST(Tape, GradientsOfViscousElementsAgreeWithDifferences) {

@@ -141,7 +141,7 @@ class ForwardPass {
     const double size = difference_size(largest_of(tangent, step.ahead > 0));
     if (size > 0) add_forces_of_beginning(step, size, tangent, by_parameter.forces);
     model_.tissue.carry_hanging(by_parameter.forces);
-    model_.tissue.place_hanging(by_parameter.moved);
+    if (!by_parameter.moved.empty()) model_.tissue.place_hanging(by_parameter.moved);
     for (double& rate : by_parameter.excess) rate = -rate;
     by_parameter_[p] =
         solver_.solve(step, at, {by_parameter.forces, by_parameter.excess, by_parameter.moved}, input_.tolerance)
