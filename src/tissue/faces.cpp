@@ -42,16 +42,14 @@ std::vector<Panel> in_order_of_elements(const Tissue& tissue, const Cell& cell, 
     std::ranges::sort(nodes);
     return nodes;
   };
-  std::map<std::array<NodeId, 4>, WallId> walls;
-  for (const Panel& panel : panels) walls[sorted(panel.nodes)] = panel.wall;
+  std::map<std::array<NodeId, 4>, Panel> by_nodes;
+  for (const Panel& panel : panels) by_nodes[sorted(panel.nodes)] = panel;
   std::vector<Panel> in_order;
   const std::size_t begin = cell.first_element.index();
   for (std::size_t e = begin; e < begin + cell.element_count; ++e)
-    for (int f = 0; f < 4; ++f) {
-      const std::array<NodeId, 4> nodes = face_nodes(tissue.elements[e], f);
-      if (const auto found = walls.find(sorted(nodes)); found != walls.end())
-        in_order.push_back({nodes, found->second});
-    }
+    for (int f = 0; f < 4; ++f)
+      if (const auto found = by_nodes.find(sorted(face_nodes(tissue.elements[e], f))); found != by_nodes.end())
+        in_order.push_back(found->second);
   return in_order;
 }
 

@@ -13,7 +13,7 @@
 
 namespace plica {
 
-/// Bilinear face, counter-clockwise seen from outside its cell.
+/// Bilinear face, counter-clockwise seen from outside its cell; a lateral one begins at the base.
 struct Face {
   std::array<NodeId, 4> nodes;
   CellId cell;

@@ -7,6 +7,7 @@
 #include "tissue/mirror.hpp"
 #include "tissue/shapes/embryo.hpp"
 #include "tissue/shapes/polygon_embryo.hpp"
+#include "tissue/shapes/polygon_sheet.hpp"
 
 namespace {
 
@@ -28,6 +29,21 @@ TEST(Faces, OfAnEmbryoHaveTwoCellsEach) {
   const Counted counted = expect_faces_enclose_the_cells(build_shell({200, 100, 20, {6, 4, 4}, {1, 1, 1}}));
   EXPECT_EQ(counted.rims, 0u);
   EXPECT_EQ(counted.lateral, 2u * 128);  // four sides a cell, two cells a side
+}
+
+TEST(Faces, AtTheSidesBeginAtTheBase) {
+  const Tissue block = build_block(
+      {.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}, .elements_per_cell = {2, 1, 2}});
+  for (const Tissue& tissue : {block, build_sheet({40, 40}, 12, 1, {10, PolygonSplit::diagonals, 1})}) {
+    const std::vector<Face> faces = faces_of(tissue, CellSide::lateral);
+    EXPECT_GT(faces.size(), 30U);
+    for (const auto& [nodes, cell, beyond, share] : faces) {
+      const auto z = [&](int corner) { return tissue.rest_positions[nodes[corner].index()].z(); };
+      EXPECT_EQ(z(0), z(1));
+      EXPECT_EQ(z(2), z(3));
+      EXPECT_LT(z(0), z(2));
+    }
+  }
 }
 
 // One wall may face two daughters: it is two faces then.

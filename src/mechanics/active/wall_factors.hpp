@@ -34,8 +34,8 @@ struct WallFactorRule {
   [[nodiscard]] bool is_used() const { return direction || noise.spread > 0; }
 };
 
-/// Return the direction factor of a face at these positions; where the surface is normal to the axis, that of 45
-/// degrees.
+/// Return the direction factor of a lateral face, from the base on, at these positions; where the surface is normal to
+/// the axis, that of 45 degrees.
 double direction_factor(const WallDirection& direction, const std::array<Vec3, 4>& face);
 
 /// Return its derivatives by the four corners, 1/um.

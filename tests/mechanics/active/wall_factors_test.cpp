@@ -96,6 +96,27 @@ TEST(WallFactors, OfNoiseAreTheSameForManyPairs) {
   }
 }
 
+// Walls of a block are normal to an axis: tensions, and forces on a corner, are those of two walls.
+TEST(WallFactors, PullByTheDirectionOfEveryWallOfABlock) {
+  const Tissue tissue = build_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}});
+  const Motion motion = at_rest(tissue);
+  for (const bool across : {false, true}) {
+    const Cortex law(tissue, CellSet(tissue.cells.size(), true),
+                     {.side = CellSide::lateral, .tension = 1, .walls = {WallDirection{across, 1.6, 0.4}, {}}});
+    const std::vector<double> tensions = law.tensions(motion.step());
+    ASSERT_EQ(tensions.size(), 3U * 3 + 4 * 2);
+    for (std::size_t f = 0; f < tensions.size(); ++f) {
+      const Vec3 normal = facet_area_vector(gather(tissue.rest_positions, law.faces()[f].nodes)).normalized();
+      EXPECT_NEAR(tensions[f], std::abs(across ? normal.y() : normal.x()) > 0.5 ? 1.6 : 0.4, 1e-12);
+    }
+    // At a corner of the block: the wall along x pulls towards +x with half its tension times its height.
+    const auto at_corner = std::ranges::find_if(tissue.rest_positions, [](const Vec3& x) { return x.x() < -29; });
+    const Vec3 force =
+        forces_of(law, motion.step())[static_cast<std::size_t>(at_corner - tissue.rest_positions.begin())];
+    EXPECT_NEAR(std::abs(force.x()), 15 * (across ? 1.6 : 0.4), 1e-9);
+  }
+}
+
 TEST(WallFactors, LeaveForcesThoseOfAnEnergy) {
   const Tissue tissue =
       distorted_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}}, 2, 3);
