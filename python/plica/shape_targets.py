@@ -87,7 +87,7 @@ class NodeTarget:
 
     def distance_um(self, positions: Array) -> float:
         """Return the root mean square distance of known coordinates."""
-        return self.noise_um * (self.misfit(positions)[0] / self.count) ** 0.5
+        return float(self.noise_um * (self.misfit(positions)[0] / self.count) ** 0.5)
 
     def given(self) -> Array:
         """Return all numbers of the target."""
