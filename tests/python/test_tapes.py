@@ -84,6 +84,32 @@ def test_a_function_of_several_times(tape):
     assert by_array == by_function
 
 
+def moved(tape):
+    """Outcome of all positions, with random weights."""
+    rest = tape.positions(0)
+    weights = np.random.default_rng(1).uniform(-1, 1, rest.shape)
+    return lambda positions: (float((weights * (positions - rest)).sum()), weights)
+
+
+def test_keys_of_signals_agree_with_differences():
+    scenario = plica.Scenario("wave")
+    scenario.update({"embryo.length_um": 60, "embryo.width_um": 20, "embryo.cell_count": 60, "signal.u.initial": 0.5,
+        "signal.u.source": {"region": "left-end", "per_min": 0.1}, "cortex.apical.program": {"time_min": [0, 0.2], "activity": [0, 1]}})
+    tape = plica.record(scenario, until_min=0.5)
+    keys = ["signal.u.diffusion_um2_per_min", "signal.u.constants.k", "signal.u.initial", "cortex.apical.follow.to"]
+    for check in plica.check_gradient(tape, moved(tape), of=keys):
+        assert abs(check.gradient) > 0.1 and check.error < 1e-6, check
+
+
+def test_strengths_in_growing_cells_agree_with_differences():
+    scenario = plica.Scenario(BLOCK)
+    scenario.update({"growth.all": {"region": "all", "rate_per_h": 60}})
+    tape = plica.record(scenario, until_min=0.5, strengths={"cortex.apical": [1.3, 0.7, 1.1, 0.8, 1.2, 0.9]})
+    checks = plica.check_gradient(tape, moved(tape), of="cortex.apical", by="cell")
+    for check in checks + plica.check_gradient(tape, moved(tape), of="growth.all.rate_per_h"):
+        assert check.error < 1e-6, check
+
+
 def test_one_way_back_gives_all_keys(tape):
     keys = ["cortex.apical.tension_mN_per_m", "elasticity.young_modulus_Pa"]
     both = tape.gradient("top.area_um2", of=keys)
@@ -142,7 +168,7 @@ def test_bad_arguments_are_told(tape, arguments, message):
 
 REFUSED = [
     ({"cortex.apical.trigger": {"measure": "apical_area_ratio", "below": 0.9}}, "cortex.apical: a jump at a time given by a trigger"),
-    ({"signal.u": {"initial": 1}, "cortex.apical.follow": {"signal": "u", "from": 0, "to": 1}}, "cortex.apical: signals have no"),
+    ({"signal.u": {"initial": 0.1}, "cortex.apical.trigger": {"signal": "u", "above": 0.5}}, "cortex.apical: a trigger by a signal has no"),
     ({"dynamics.density_kg_per_m3": 1000, "time.integrator": "backward-euler"}, "inertia: this law has no derivatives yet"),
     ({"time.scheme": "linearly-implicit", "volume.method": "projection"}, "only Newton's steps"),
 ]
