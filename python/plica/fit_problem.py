@@ -139,7 +139,7 @@ class Problem:
 
     def _slopes_of(self, targets: list[Row], tape: Tape) -> Array:
         slopes = tape._rows([(target.outcome, target.at_min) for target in targets], self.keys, ACCURACY)[1]
-        return slopes / np.array([[target.sd] for target in targets])
+        return np.asarray(slopes / np.array([[target.sd] for target in targets]))
 
     def _used(self, until: Optional[float]) -> list[Experiment]:
         return [one for one in self.experiments if targets_until(one, until)]

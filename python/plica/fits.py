@@ -193,9 +193,11 @@ class Fit:
         return figure
 
     def __str__(self) -> str:
-        rows = [(key, f"{self.values[key]:.4g}", *(f"{end:.4g}" for end in ends), _at_bound(self.values[key], self.bounds[key]))
-                for key, ends in self.intervals().items()]
-        goals = [(_title(one), f"{one.value:.4g}", f"{one.sd:.2g}", f"{one.found:.4g}") for one in self.misses]
+        rows: list[tuple[str, ...]] = [
+            (key, f"{self.values[key]:.4g}", *(f"{end:.4g}" for end in ends), _at_bound(self.values[key], self.bounds[key]))
+            for key, ends in self.intervals().items()]
+        goals: list[tuple[str, ...]] = [
+            (_title(one), f"{one.value:.4g}", f"{one.sd:.2g}", f"{one.found:.4g}") for one in self.misses]
         told_of = [f"Fit: {self.end} after {self.runs} runs; score {self.score:.3g} of {len(self.misses)} targets",
                    *in_columns(rows, ("key", "value", "5 %", "95 %", "")), *in_columns(goals, ("target", "value", "sd", "found"))]
         for is_open, heading in ((False, "Identified (relative sd):"), (True, "Left open by the targets (keys that may change together):")):
@@ -296,11 +298,12 @@ def fit(
     places = [problem.start, *np.random.default_rng(seed).uniform(problem.low, problem.high, (starts - 1, len(problem.keys)))]
     ends: list[End] = []
     failure: Optional[NumericsError] = None
+    stages: list[Optional[float]] = [None] if early is None else [early, None]
     with Counter("fit", "run", progress) as counter:
         for place in places:
             try:
                 end = End(place, math.inf, 0, "")
-                for until in [None] if early is None else [early, None]:
+                for until in stages:
                     end = descend(problem, end, until, runs, least, counter)
                 ends.append(end)
             except NumericsError as error:
@@ -328,7 +331,8 @@ def _result(problem: Problem, ends: list[End]) -> Fit:
         scenarios[-1].update(problem.values_at(best.place))
     return Fit(
         values=problem.values_at(best.place), scenarios=scenarios, misses=misses, jacobian=slopes[:len(misses)],
-        covariance=np.linalg.inv(information + np.diag(1e-9 / spread**2)), runs=sum(end.runs for end in ends), end=best.end,
+        covariance=np.asarray(np.linalg.inv(information + np.diag(1e-9 / spread**2)), dtype=np.float64),
+        runs=sum(end.runs for end in ends), end=best.end,
         starts=[(end.score, problem.values_at(end.place)) for end in ends], bounds=problem.bounds, _information=information)
 
 
