@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from .arguments import number_from, path_of, text_of, texts_of, told, whole
 from .errors import FileError, NumericsError
 from .scenario import Scenario
-from .shape_targets import ApicalFaces, Target, target_of
+from .shape_targets import ApicalFaces, CellTarget, NodeTarget, Target, target_of
 from .simulation import Simulation
 from .tapes import Tape, record
 
@@ -114,7 +114,7 @@ class _Problem:
 
     def factors(self, v: Array) -> dict[str, Array]:
         """Return factors of all cells; 1 where a law does not act."""
-        found = {}
+        found: dict[str, Array] = {}
         for field, log in zip(self.fields, self.logs(v)):
             found[field.law] = np.ones(field.cells)
             found[field.law][field.acting] = np.exp(log)
@@ -159,9 +159,8 @@ class _Descent:
 
     def __init__(self, problem: _Problem, spread: Optional[float], probes: int) -> None:
         self.problem, self.given_spread, self.probes = problem, spread, probes
-        size = sum(len(field.acting) for field in problem.fields)
-        self.v = np.zeros(size)
-        self.spreads = np.full(len(problem.fields), FIRST_SPREAD if spread is None else spread)
+        self.v: Array = np.zeros(sum(len(field.acting) for field in problem.fields))
+        self.spreads: Array = np.full(len(problem.fields), FIRST_SPREAD if spread is None else spread)
         self.weight = 1.0  # of the misfit; below 1 where it exceeds the noise
         self.times = 0
         self.converged = self._is_slow = False
@@ -498,9 +497,12 @@ def _targets(scenario: Scenario, simulation: Simulation, shapes: Any, surface: s
     if 0 in by_time:
         first = target_of(by_time[0], "shapes[0]", faces, nodes, compared, noise_um)
         for time, target in zip(times_min, targets):
-            if type(first) is not type(target):
+            if isinstance(first, NodeTarget) and isinstance(target, NodeTarget):
+                target.compare_changes_since(first, simulation.positions)
+            elif isinstance(first, CellTarget) and isinstance(target, CellTarget):
+                target.compare_changes_since(first, simulation.positions)
+            else:
                 raise ValueError(f"shapes: that at 0 and that at {time:g} min are of different kinds; give both as nodes, or both as cells")
-            target.compare_changes_since(first, simulation.positions)
     size = float(np.ptp(simulation.positions, axis=0).max())
     for time, target in zip(times_min, targets):
         apart = target.distance_um(simulation.positions)
@@ -562,7 +564,7 @@ def _result(descent: _Descent) -> Inference:
     counts = problem.counts(descent.times)
 
     def by_law(values: Array) -> dict[str, Array]:
-        found = {}
+        found: dict[str, Array] = {}
         for field, part in zip(problem.fields, problem.by_law(values)):
             found[field.law] = np.full(field.cells, np.nan)
             found[field.law][field.acting] = part
