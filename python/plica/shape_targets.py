@@ -87,11 +87,7 @@ class NodeTarget:
 
     def distance_um(self, positions: Array) -> float:
         """Return the root mean square distance of known coordinates."""
-<<<<<<< ours
         return float(self.noise_um * (self.misfit(positions)[0] / self.count) ** 0.5)
-=======
-        return float(self.noise_um * np.sqrt(self.misfit(positions)[0] / self.count))
->>>>>>> theirs
 
     def given(self) -> Array:
         """Return all numbers of the target."""

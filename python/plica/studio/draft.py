@@ -22,7 +22,8 @@ STARTS: dict[str, Table] = {
 BEGUN: dict[str, Table] = {
     "ablation": {"at_s": 0}, "cortex": {"tension_mN_per_m": 1}, "division": {"at_s": 60},
     "elasticity": {"young_modulus_Pa": 1000}, "extrusion": {"apical_area_below_um2": 5},
-    "foundation": {"stiffness_nN_per_um3": 0.002}, "growth": {"rate_per_h": 0.6}, "monitor": {"axis": "z"},
+    "foundation": {"stiffness_nN_per_um3": 0.002}, "growth": {"rate_per_h": 0.6},
+    "matrix": {"young_modulus_Pa": 30000, "thickness_um": 0.1}, "monitor": {"axis": "z"},
     "region": {"x_um": [-10, 10]}, "signal": {"initial": 1}, "stop": {"above": 0},
 }
 Changes = Mapping[str, Any]  # by dotted key; None removes a key or a table
