@@ -52,7 +52,7 @@ def row_of(key: str, tables: list[Table]) -> Table:
 
 def begun(kind: str, region: str, table: Table, tables: list[Table]) -> Table:
     """Return a new table of a kind, "cortex" say, for a scenario: its required keys, with values that are accepted."""
-    rows = next((one["rows"] for one in tables if one["path"] == f"{kind}.*"), [])
+    rows: list[Table] = next((one["rows"] for one in tables if one["path"] == f"{kind}.*"), [])
     made: Table = {row["key"]: 0 if row["type"] == "number" else (row["words"] or [""])[0]
                    for row in rows if row["required"] and "." not in row["key"]}
     if any(row["key"] == "region" for row in rows):
