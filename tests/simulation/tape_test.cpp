@@ -187,10 +187,10 @@ TEST(Tape, GradientsOfAFurrowInContactAgreeWithDifferences) {
                    {{"cortex.apical.tension_mN_per_m", 1.4}},
                    "",
                    1200,
-                   {},
+                   {960},  // just after closure; later, slopes of this outcome are small
+                   3e-5,
                    1e-4,
-                   1e-4,
-                   2e-6});
+                   1e-7});
 }
 
 TEST(Tape, GradientsOfViscousElementsAgreeWithDifferences) {

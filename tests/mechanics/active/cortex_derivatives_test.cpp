@@ -41,10 +41,8 @@ TEST(CortexDerivatives, OfShapeDependentActivityAgreeWithFiniteDifferences) {
   for (const ShapeMeasure measure : {ShapeMeasure::apical_area_ratio, ShapeMeasure::basal_area_ratio,
                                      ShapeMeasure::height_ratio, ShapeMeasure::apical_stretch})
     for (const Kind kind : {Kind::starts_below, Kind::starts_above, Kind::follows}) {
-      // One apex above the threshold hardly changes: differences do not resolve its time.
-      if (measure == ShapeMeasure::apical_area_ratio && kind == Kind::starts_above) continue;
       CortexRule rule = full_rule(CellSide::lateral);
-      rule.activation = {.kind = kind, .measure = measure, .threshold = 1.02, .from = 0.7, .to = 1.5};
+      rule.activation = {.kind = kind, .measure = measure, .threshold = 1.05, .from = 0.7, .to = 1.5};
       const Cortex law(tissue, every_cell, rule);
       const auto smooth = law.smooth();
       const Law& recorded = smooth ? *smooth : static_cast<const Law&>(law);
@@ -55,7 +53,7 @@ TEST(CortexDerivatives, OfShapeDependentActivityAgreeWithFiniteDifferences) {
                               : c < 2               ? 0.3 + 0.2 * static_cast<double>(c)
                                                     : ShapeActivation::not_yet;
       SCOPED_TRACE(testing::Message() << static_cast<int>(measure) << ", " << static_cast<int>(kind));
-      check_law_derivatives(recorded, tissue, 2, internal, 1e-6);
+      check_law_derivatives(recorded, tissue, 2, internal, 5e-6);
     }
 }
 
