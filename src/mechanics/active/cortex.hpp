@@ -187,9 +187,10 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   CellPattern pattern_;
   std::vector<Face> faces_;         // faces with nonzero strength
   std::vector<double> rest_areas_;  // faces; um^2: A_r
-  // Faces, since the last change of the tissue: A_r / area in the undeformed tissue, 1 unless born after it, and the
-  // area (um^2) from which A_r grows.
+  // Faces, since the last change of the tissue: A_r / area in the undeformed tissue, 1 unless born after it, or / um^2
+  // once cells were remeshed, and the area (um^2) from which A_r grows.
   std::vector<double> stretches_, ungrown_areas_;
+  bool is_remeshed_ = false;       // cells have exchanged neighbours, or left
   Vectors rest_normals_;           // faces; in the rest shapes of then
   std::vector<double> strengths_;  // faces
   ShapeActivation activation_;

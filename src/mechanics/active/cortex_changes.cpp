@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <set>
 
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/growth.hpp"
@@ -33,11 +34,15 @@ class Cortex::Origins {
     std::vector<std::vector<std::size_t>> origins;
     std::map<CellId, std::size_t> ordinals;
     for (const Face& face : faces) origins.push_back(of(face, ordinals[face.cell]++));
+    if (shares() && change_.remeshed.empty()) leave_known(origins);
     return origins;
   }
 
+  /// Whether cells are remeshed, or have been: reference positions mean nothing then, and faces may have no area there.
+  [[nodiscard]] bool shares() const { return before_.is_remeshed_ || !change_.remeshed.empty(); }
+
   /// Reference areas that do not follow from areas in the undeformed tissue, given present ones and origins: of faces
-  /// without origin, and of all where cells are remeshed, which share that of their origins. 0: it follows from them.
+  /// without origin, and of all that share that of their origins. 0: it follows from them.
   [[nodiscard]] std::vector<double> first_areas(std::span<const Face> faces, std::span<const double> now,
                                                 const std::vector<std::vector<std::size_t>>& origins) const {
     std::map<std::vector<std::size_t>, double> wholes;
@@ -45,7 +50,7 @@ class Cortex::Origins {
     std::vector<double> first(faces.size(), 0.0);
     for (std::size_t f = 0; f < faces.size(); ++f) {
       if (origins[f].empty()) first[f] = change_.remeshed.empty() ? now[f] : mean_about(faces[f]).value_or(now[f]);
-      if (change_.remeshed.empty()) continue;
+      if (!shares()) continue;
       for (const std::size_t from : origins[f]) first[f] += before_.rest_areas_[from] * (now[f] / wholes[origins[f]]);
     }
     return first;
@@ -78,6 +83,18 @@ class Cortex::Origins {
     return found == by_cells_.end() ? std::vector<std::size_t>() : found->second;
   }
 
+  // Faces known by their nodes keep what they have; others share the rest.
+  static void leave_known(std::vector<std::vector<std::size_t>>& origins) {
+    std::set<std::size_t> known;
+    for (const std::vector<std::size_t>& from : origins)
+      if (from.size() == 1) known.insert(from.front());
+    for (std::vector<std::size_t>& from : origins) {
+      std::vector<std::size_t> left;
+      std::ranges::copy_if(from, std::back_inserter(left), [&](std::size_t f) { return !known.contains(f); });
+      if (!left.empty()) from = std::move(left);
+    }
+  }
+
   // Mean reference area of the former faces of both cells.
   [[nodiscard]] std::optional<double> mean_about(const Face& face) const {
     double sum = 0;
@@ -106,6 +123,8 @@ void Cortex::inherit_faces(const Origins& origins, const Cortex& before, std::sp
   const std::vector<double> now = areas(positions);
   const auto all = origins.of(faces_);
   const std::vector<double> first = origins.first_areas(faces_, now, all);
+  is_remeshed_ = origins.shares();
+  if (is_remeshed_) rest_areas_.assign(faces_.size(), 1);
   std::vector<double> stretches;
   const std::vector<double> stretches_before = before.past();
   for (std::size_t f = 0; f < faces_.size(); ++f) {
@@ -129,6 +148,7 @@ void Cortex::take_stretches(std::vector<double> stretches) {
 std::vector<double> Cortex::past() const {
   std::vector<double> stretches = stretches_;
   for (std::size_t f = 0; f < faces_.size(); ++f) stretches[f] *= rest_areas_[f] / ungrown_areas_[f];
+  if (is_remeshed_) stretches.push_back(1);  // tells it
   return stretches;
 }
 
@@ -160,8 +180,12 @@ std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const TissueCh
 std::unique_ptr<Law> Cortex::restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
                                       std::span<const double> past) const {
   auto law = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_, kernels_);
-  if (past.size() != law->faces_.size()) throw InvalidNumbers();
-  law->take_stretches({past.begin(), past.end()});
+  const std::size_t faces = law->faces_.size();
+  law->is_remeshed_ = past.size() == faces + 1;
+  if (past.size() != faces && !law->is_remeshed_) throw InvalidNumbers();
+  if (law->is_remeshed_) law->rest_areas_.assign(faces, 1);
+  const std::span<const double> stretches = past.first(faces);
+  law->take_stretches({stretches.begin(), stretches.end()});
   return law;
 }
 
