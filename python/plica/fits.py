@@ -276,11 +276,11 @@ def fit(
     --------
     >>> import plica
     >>> block = plica.Scenario({
-    ...     "format": 1, "time": {"end_s": 60}, "stop": {"at_equilibrium": False}, "cortex": {"top": {"region": "all"}},
+    ...     "format": 1, "time": {"end_s": 60}, "stop": {"at_equilibrium": False},
+    ...     "cortex": {"top": {"region": "all", "tension_mN_per_m": 2}},
     ...     "embryo": {"shape": "block", "length_um": 60, "width_um": 40, "cell_height_um": 20, "cells": [3, 2, 1]},
     ...     "monitor": {"top": {"quantity": "area", "over": "sum"}}})
     >>> key = "cortex.top.tension_mN_per_m"
-    >>> block[key] = 2
     >>> area = plica.record(block).value("top.area_um2")
     >>> block[key] = 1
     >>> found = plica.fit(block, {"top.area_um2": (area, 1)}, of={key: (0.5, 5)})
