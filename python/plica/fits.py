@@ -96,10 +96,11 @@ class Fit:
         The scenarios with these values.
     misses : list of Miss
         Targets, and what the fit has there.
-    jacobian : ndarray of float, shape (targets, keys)
-        Derivatives in standard deviations of targets by logarithms of keys (by the key for one whose bounds include 0).
-    covariance : ndarray of float, shape (keys, keys)
-        Covariance of these logarithms near the best place, bounds apart.
+    jacobian : ndarray of float
+        A row per target, a column per key: derivatives in standard deviations of targets by logarithms of keys (by the key for
+        one whose bounds include 0).
+    covariance : ndarray of float
+        Covariance of these logarithms near the best place, bounds apart; a row and a column per key.
     runs : int
         Runs of all scenarios together, over all starts.
     end : str

@@ -310,11 +310,11 @@ class Inference:
 
     Attributes
     ----------
-    factors : dict of str to ndarray of float, shape (cells,)
-        Factor on the strength of each cell by law, with mean 1; NaN where the law does not act.
-    sd : dict of str to ndarray of float, shape (cells,)
+    factors : dict of str to ndarray of float
+        By law, a number per cell: factor on its strength, with mean 1; NaN where the law does not act.
+    sd : dict of str to ndarray of float
         Posterior standard deviation of the logarithms of factors, given prior, noise and model.
-    unseen : dict of str to ndarray of float, shape (cells,)
+    unseen : dict of str to ndarray of float
         Part of the prior variance that remains: 0, known from the shapes; 1, not seen by them.
     scale : float
         Mean factor at the scenario's stiffnesses and drag.
