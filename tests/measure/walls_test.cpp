@@ -119,39 +119,6 @@ TEST(Walls, OfDaughtersHaveTheFactorsOfTheirMother) {
   EXPECT_EQ(checked, 9);  // four rims, two walls to 0, two to 2, one between
 }
 
-const std::string exchanging = R"([embryo]
-shape = "sheet"
-length_um = 36
-width_um = 36
-cell_count = 36
-cell_height_um = 10
-[elasticity]
-model = "neo-hookean"
-young_modulus_Pa = 100
-poisson_ratio = 0
-relaxation_min = 1
-[exchange]
-below_um = 0.5
-[cortex.lateral]
-region = "all"
-faces = "lateral"
-tension_mN_per_m = 0.5
-direction = { axis = "along", strongest = 1.6, weakest = 0.4 }
-noise = { spread = 0.8, correlation_s = 60 }
-[cortex.apical]
-region = "all"
-tension_mN_per_m = 0.42
-[cortex.basal]
-region = "all"
-faces = "basal"
-tension_mN_per_m = 0.42
-[time]
-end_min = 3
-max_step_s = 10
-[stop]
-at_equilibrium = false
-)";
-
 using PairOfCells = std::pair<CellId, std::optional<CellId>>;
 
 std::map<PairOfCells, double> factors_of(const Simulation& simulation) {
@@ -165,7 +132,7 @@ std::map<PairOfCells, double> factors_of(const Simulation& simulation) {
 // Pairs that stay keep their factors, pairs that meet begin with 1; from a checkpoint and on three threads the run
 // continues to the same numbers.
 TEST(Walls, KeepFactorsByPairsOfCellsThroughExchanges) {
-  Simulation simulation(scenario_of(exchanging));
+  Simulation simulation(scenario_of(exchanging_sheet));
   std::vector<double> factors;
   Random random(5);
   while (factors.size() < measured_walls(simulation.model(), simulation.state()).size())
@@ -185,7 +152,7 @@ TEST(Walls, KeepFactorsByPairsOfCellsThroughExchanges) {
   EXPECT_GT(kept, 60);
   EXPECT_GT(met, 1);
   const ThreadCount scope(3);
-  Simulation fresh(scenario_of(exchanging));
+  Simulation fresh(scenario_of(exchanging_sheet));
   go_on_by_bytes(fresh, memory);
   fresh.run();
   expect_same(fresh.state(), simulation.state());

@@ -362,41 +362,7 @@ TEST(Neighbours, ShearIsThatOfTheChosenCells) {
   EXPECT_NEAR(shape_shear(tissue, right, after), 0.5 * std::log(1.02), 1e-9);
 }
 
-const std::string extension = R"(format = 1
-[embryo]
-shape = "sheet"
-length_um = 36
-width_um = 36
-cell_count = 36
-cell_height_um = 10
-[elasticity]
-model = "neo-hookean"
-young_modulus_Pa = 100
-poisson_ratio = 0
-relaxation_min = 1
-[exchange]
-below_um = 0.5
-[cortex.lateral]
-region = "all"
-faces = "lateral"
-tension_mN_per_m = 0.5
-direction = { axis = "along", strongest = 1.6, weakest = 0.4 }
-noise = { spread = 0.8, correlation_s = 60 }
-[cortex.apical]
-region = "all"
-tension_mN_per_m = 0.42
-[cortex.basal]
-region = "all"
-faces = "basal"
-tension_mN_per_m = 0.42
-[time]
-end_min = 3
-max_step_s = 10
-[stop]
-at_equilibrium = false
-[output]
-frame_every_s = 0
-)";
+const std::string extension = "format = 1\n" + exchanging_sheet + "[output]\nframe_every_s = 0\n";
 
 // From memories around events, by the bytes of a checkpoint, and on three threads.
 void expect_resumable(const std::string& text, const std::vector<std::string>& overrides, bool extrudes = false) {

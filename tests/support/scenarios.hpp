@@ -172,4 +172,38 @@ inline std::vector<std::vector<std::string>> named_remedies(const std::string& m
   return remedies;
 }
 
+/// Sheet of 36 cells that exchange neighbours by polarity and noise; 3 min.
+inline const std::string exchanging_sheet = R"([embryo]
+shape = "sheet"
+length_um = 36
+width_um = 36
+cell_count = 36
+cell_height_um = 10
+[elasticity]
+model = "neo-hookean"
+young_modulus_Pa = 100
+poisson_ratio = 0
+relaxation_min = 1
+[exchange]
+below_um = 0.5
+[cortex.lateral]
+region = "all"
+faces = "lateral"
+tension_mN_per_m = 0.5
+direction = { axis = "along", strongest = 1.6, weakest = 0.4 }
+noise = { spread = 0.8, correlation_s = 60 }
+[cortex.apical]
+region = "all"
+tension_mN_per_m = 0.42
+[cortex.basal]
+region = "all"
+faces = "basal"
+tension_mN_per_m = 0.42
+[time]
+end_min = 3
+max_step_s = 10
+[stop]
+at_equilibrium = false
+)";
+
 }  // namespace plica::support
