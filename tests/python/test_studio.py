@@ -13,6 +13,7 @@ import pytest
 
 import plica
 from plica import ScenarioError
+from plica.studio import run as studio_run
 from plica.studio.draft import STARTS, Draft
 from plica.studio.frames import FrameFile
 from plica.studio.server import CARDS
@@ -98,6 +99,12 @@ def test_a_run_has_the_bits_of_the_command_line_wherever_it_pauses(session, tmp_
     assert np.array_equal(last_positions(run), sim.positions.astype("f4").ravel())
     assert len(run.rows) - 1 == sim.steps
     assert run.rows[-1][1:] == [None if v is None else v for v in list(sim.measures.values())[1:]]
+
+
+def test_the_scenarios_frames_are_kept_however_quick_the_machine_is(session, monkeypatch):
+    monkeypatch.setattr(studio_run, "FRAME_APART_S", np.inf)
+    run = run_to(session, session.order("start", {"until_s": 1})["run"], 60.0)
+    assert [frame.time_s for frame in run.file.frames][-4:] == pytest.approx([15, 30, 45, 60])
 
 
 def test_acts_are_repeated_to_the_same_bits(session, tmp_path):

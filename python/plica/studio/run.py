@@ -27,7 +27,7 @@ from .frames import Frame, FrameFile
 from .messages import packed
 from .shapes import ends_of_colours, shape_message, values_now
 
-FRAME_APART_S = 0.02  # of wall time, so that quick runs are not slowed down
+FRAME_APART_S = 0.02  # of wall time, between frames that are kept beside those of the scenario
 MOST_KEPT = 64
 INSTANT_S = 1e-6
 
@@ -289,13 +289,19 @@ class StudioRun:
 
     def _show(self, sim: Simulation, force: bool = False) -> None:
         now = monotonic()
-        is_new = not self.file.frames or self.file.frames[-1].time_s < sim.time_s
-        if not is_new or self.file.is_full or (not force and now - self._shown_at < FRAME_APART_S):
+        last_s = self.file.frames[-1].time_s if self.file.frames else -math.inf
+        is_due = force or now - self._shown_at >= FRAME_APART_S or self._scenario_keeps(last_s, sim.time_s)
+        if last_s >= sim.time_s or self.file.is_full or not is_due:
             return
         self._shown_at = now
         self._follow_shape(sim)
         self.file.add(sim.time_s, len(self.shapes) - 1, sim.positions.astype("f4"), values_now(sim))
         self._told()
+
+    def _scenario_keeps(self, after_s: float, to_s: float) -> bool:
+        """Is a time of `output.frame_every_s` among those after the one, up to the other? However quick the machine is."""
+        every_s = float(self.scenario["output.frame_every_s"])
+        return every_s > 0 and math.floor(to_s / every_s + INSTANT_S) * every_s > after_s + INSTANT_S
 
     @property
     def _inherited(self) -> list[tuple[StudioRun, int]]:
