@@ -1,9 +1,22 @@
 #include "core/box_grid.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
+#include <utility>
 
 namespace plica {
+namespace {
+
+using Cube = std::array<std::int64_t, 3>;
+
+template <class Take>
+void for_cubes(const Cube& from, const Cube& to, const Take& take) {
+  for (std::int64_t i = from[0]; i <= to[0]; ++i)
+    for (std::int64_t j = from[1]; j <= to[1]; ++j)
+      for (std::int64_t k = from[2]; k <= to[2]; ++k) take(Cube{i, j, k});
+}
+
+}  // namespace
 
 Box box_of(std::span<const Vec3> points) {
   Box box{points[0], points[0]};
@@ -11,44 +24,91 @@ Box box_of(std::span<const Vec3> points) {
   return box;
 }
 
-template <class Take>
-void BoxGrid::for_cubes(const Box& box, const Take& take) const {
-  const Cube from = cube(box.low), to = cube(box.high);
-  for (long i = from[0]; i <= to[0]; ++i)
-    for (long j = from[1]; j <= to[1]; ++j)
-      for (long k = from[2]; k <= to[2]; ++k) take(key({i, j, k}));
+BoxGrid::BoxGrid(double cube_size, std::vector<Box> boxes) : cubes_per_um_(1 / cube_size), boxes_(std::move(boxes)) {
+  std::vector<Cube> last_cubes;
+  std::size_t count = 0;
+  for (const Box& box : boxes_) {
+    const Cube& from = first_cubes_.emplace_back(cube(box.low));
+    const Cube& to = last_cubes.emplace_back(cube(box.high));
+    std::size_t cubes = 1;
+    for (int i = 0; i < 3; ++i) cubes *= static_cast<std::size_t>(to[i] - from[i] + 1);
+    count += cubes;
+  }
+  // Sort by counting: boxes of each cube, places of the cubes, numbers.
+  slots_.resize(std::bit_ceil(2 * count + 1));
+  std::vector<std::uint32_t> slots, used;
+  slots.reserve(count);
+  for (std::size_t b = 0; b < boxes_.size(); ++b)
+    for_cubes(first_cubes_[b], last_cubes[b], [&](const Cube& cube) {
+      const std::uint64_t its_key = key(cube);
+      const auto at = static_cast<std::uint32_t>(slot(its_key));
+      if (slots_[at].end == 0) used.push_back(at);
+      slots_[at].key = its_key;
+      ++slots_[at].end;
+      slots.push_back(at);
+    });
+  std::uint32_t begin = 0;
+  for (const std::uint32_t at : used) {
+    const std::uint32_t size = slots_[at].end;
+    slots_[at].begin = slots_[at].end = begin;
+    begin += size;
+  }
+  numbers_.resize(count);
+  auto at = slots.begin();
+  for (std::size_t b = 0; b < boxes_.size(); ++b)
+    for_cubes(first_cubes_[b], last_cubes[b],
+              [&](const Cube&) { numbers_[slots_[*at++].end++] = static_cast<std::uint32_t>(b); });
 }
 
-void BoxGrid::add(std::size_t number, const Box& box) {
-  for_cubes(box, [&](std::uint64_t key) { numbers_[key].push_back(number); });
+std::span<const std::uint32_t> BoxGrid::near(const Vec3& place) const {
+  if (slots_.empty()) return {};
+  const Slot& there = slots_[slot(key(cube(place)))];
+  return std::span(numbers_).subspan(there.begin, there.end - there.begin);
 }
 
-std::span<const std::size_t> BoxGrid::near(const Vec3& place) const {
-  const auto found = numbers_.find(key(cube(place)));
-  return found == numbers_.end() ? std::span<const std::size_t>{} : std::span<const std::size_t>(found->second);
-}
-
-void BoxGrid::find_near(const Box& box, std::vector<std::size_t>& found) const {
+void BoxGrid::find_overlapping(const Box& box, std::vector<std::uint32_t>& found) const {
   found.clear();
-  for_cubes(box, [&](std::uint64_t key) {
-    const auto there = numbers_.find(key);
-    if (there != numbers_.end()) found.insert(found.end(), there->second.begin(), there->second.end());
+  if (slots_.empty()) return;
+  const Cube from = cube(box.low);
+  for_cubes(from, cube(box.high), [&](const Cube& cube) {
+    const Slot& there = slots_[slot(key(cube))];
+    for (std::uint32_t n = there.begin; n < there.end; ++n) {
+      const std::uint32_t b = numbers_[n];
+      // Two boxes are found in the first cube that they have in common.
+      const Cube& its = first_cubes_[b];
+      if (std::max(its[0], from[0]) != cube[0] || std::max(its[1], from[1]) != cube[1] ||
+          std::max(its[2], from[2]) != cube[2])
+        continue;
+      if (boxes_[b].overlaps(box)) found.push_back(b);
+    }
   });
   std::ranges::sort(found);
-  found.erase(std::unique(found.begin(), found.end()), found.end());
 }
 
 BoxGrid::Cube BoxGrid::cube(const Vec3& place) const {
-  return {std::lround(std::floor(place.x() / size_)), std::lround(std::floor(place.y() / size_)),
-          std::lround(std::floor(place.z() / size_))};
+  Cube result{};
+  for (int i = 0; i < 3; ++i) {
+    const double at = place[i] * cubes_per_um_;
+    const auto toward_zero = static_cast<std::int64_t>(at);
+    result[i] = toward_zero - (at < static_cast<double>(toward_zero) ? 1 : 0);
+  }
+  return result;
 }
 
 // 21 bits a direction: two cubes of one key are a million cubes apart, and then too far to be a pair anyway.
 std::uint64_t BoxGrid::key(const Cube& cube) {
   constexpr std::uint64_t mask = (std::uint64_t{1} << 21) - 1;
   std::uint64_t result = 0;
-  for (const long i : cube) result = (result << 21) | (static_cast<std::uint64_t>(i) & mask);
+  for (const std::int64_t i : cube) result = (result << 21) | (static_cast<std::uint64_t>(i) & mask);
   return result;
+}
+
+std::size_t BoxGrid::slot(std::uint64_t key) const {
+  const std::size_t mask = slots_.size() - 1;
+  constexpr std::uint64_t golden = 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio spreads neighbours
+  std::size_t at = (key * golden >> 32) & mask;
+  while (slots_[at].end != 0 && slots_[at].key != key) at = (at + 1) & mask;
+  return at;
 }
 
 }  // namespace plica

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "core/vector.hpp"
@@ -25,23 +24,30 @@ Box box_of(std::span<const Vec3> points);
 
 class BoxGrid {
  public:
-  explicit BoxGrid(double cube_size) : size_(cube_size) {}
+  BoxGrid() = default;
+  BoxGrid(double cube_size, std::vector<Box> boxes);
 
-  void add(std::size_t number, const Box& box);
-  /// Return the boxes of the cube at the place, in order of insertion.
-  [[nodiscard]] std::span<const std::size_t> near(const Vec3& place) const;
-  /// Find the boxes of all cubes that a box overlaps, each once, ascending; replaces the content of `found`.
-  void find_near(const Box& box, std::vector<std::size_t>& found) const;
+  /// Return the boxes of the cube at the place, ascending.
+  [[nodiscard]] std::span<const std::uint32_t> near(const Vec3& place) const;
+  /// Find the boxes that overlap a box, each once, ascending; replaces the content of `found`.
+  void find_overlapping(const Box& box, std::vector<std::uint32_t>& found) const;
 
  private:
-  using Cube = std::array<long, 3>;
+  using Cube = std::array<std::int64_t, 3>;
+  struct Slot {  // of a hash table: a cube that has boxes, and their part of numbers_
+    std::uint64_t key = 0;
+    std::uint32_t begin = 0, end = 0;
+  };
   [[nodiscard]] Cube cube(const Vec3& place) const;
   [[nodiscard]] static std::uint64_t key(const Cube& cube);
-  template <class Take>
-  void for_cubes(const Box& box, const Take& take) const;
+  /// Return the slot of a key, or the empty one where it would be.
+  [[nodiscard]] std::size_t slot(std::uint64_t key) const;
 
-  double size_;
-  std::unordered_map<std::uint64_t, std::vector<std::size_t>> numbers_;
+  double cubes_per_um_ = 1;
+  std::vector<Box> boxes_;
+  std::vector<Cube> first_cubes_;  // of the boxes
+  std::vector<Slot> slots_;        // as many as a power of two
+  std::vector<std::uint32_t> numbers_;
 };
 
 }  // namespace plica

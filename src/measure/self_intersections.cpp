@@ -87,15 +87,14 @@ std::vector<std::pair<std::size_t, std::size_t>> crossing_facets(std::span<const
     sum += size;
   }
   // Cubes as large as most facets; but a facet much larger than others must not take too many.
-  BoxGrid grid(std::max(largest / 30, 1.5 * sum / static_cast<double>(std::max<std::size_t>(facets.size(), 1))));
-  for (std::size_t f = 0; f < boxes.size(); ++f) grid.add(f, boxes[f]);
+  const BoxGrid grid(std::max(largest / 30, 1.5 * sum / static_cast<double>(std::max<std::size_t>(facets.size(), 1))),
+                     boxes);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  std::vector<std::size_t> found;
+  std::vector<std::uint32_t> found;
   for (std::size_t a = 0; a < facets.size(); ++a) {
-    grid.find_near(boxes[a], found);
+    grid.find_overlapping(boxes[a], found);
     for (const std::size_t b : found)
-      if (b > a && boxes[a].overlaps(boxes[b]) && !have_common_node(facets[a], facets[b]) && cross(fans[a], fans[b]))
-        pairs.emplace_back(a, b);
+      if (b > a && !have_common_node(facets[a], facets[b]) && cross(fans[a], fans[b])) pairs.emplace_back(a, b);
   }
   return pairs;
 }

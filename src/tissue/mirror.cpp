@@ -34,9 +34,7 @@ class Reflecting {
         extent_(largest_coordinate(whole)),
         // Rounding of a mesh in double precision, with a margin.
         tolerance_(1e-9 * extent_),
-        nodes_(1e-3 * extent_) {
-    for (std::size_t n = 0; n < whole.node_count(); ++n)
-      nodes_.add(n, {whole.rest_positions[n], whole.rest_positions[n]});
+        nodes_(1e-3 * extent_, boxes_at(whole.rest_positions)) {
     for (std::size_t e = 0; e < whole.elements.size(); ++e) of_nodes_[sorted(whole.elements[e])] = ElementId(e);
   }
 
@@ -75,16 +73,19 @@ class Reflecting {
   }
 
  private:
+  [[nodiscard]] static std::vector<Box> boxes_at(std::span<const Vec3> places) {
+    std::vector<Box> boxes;
+    for (const Vec3& place : places) boxes.push_back({place, place});
+    return boxes;
+  }
   [[nodiscard]] static std::array<NodeId, 8> sorted(std::array<NodeId, 8> nodes) {
     std::ranges::sort(nodes);
     return nodes;
   }
   [[nodiscard]] std::optional<NodeId> node_at(const Vec3& place) const {
-    std::vector<std::size_t> near;
-    nodes_.find_near(Box{place, place}.widened(tolerance_), near);
-    for (const std::size_t n : near)
-      if ((whole_.rest_positions[n] - place).cwiseAbs().maxCoeff() <= tolerance_) return NodeId(n);
-    return std::nullopt;
+    std::vector<std::uint32_t> near;
+    nodes_.find_overlapping(Box{place, place}.widened(tolerance_), near);
+    return near.empty() ? std::nullopt : std::optional(NodeId(std::size_t{near.front()}));
   }
   void refuse_cut_cells(int axis, const std::string& plane) const {
     for (std::size_t c = 0; c < whole_.cells.size(); ++c) {

@@ -231,16 +231,15 @@ std::vector<ContactPair> EdgePairs::find(const Surface& surface, double distance
   const Search search(segments_, surface.positions, distance, known, mirror);
   double longest = 0;
   for (const Placed& one : all) longest = std::max(longest, (one.to - one.from).norm());
-  BoxGrid grid(std::max(search.reach(), 0.5 * longest));
-  for (std::size_t i = 0; i < all.size(); ++i) grid.add(i, all[i].box);
+  std::vector<Box> boxes;
+  for (const Placed& one : all) boxes.push_back(one.box);
+  const BoxGrid grid(std::max(search.reach(), 0.5 * longest), std::move(boxes));
   std::vector<ContactPair> pairs;
-  std::vector<std::size_t> candidates;
+  std::vector<std::uint32_t> candidates;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Box around = all[i].box.widened(search.reach());
-    grid.find_near(around, candidates);
+    grid.find_overlapping(all[i].box.widened(search.reach()), candidates);
     for (auto k = std::ranges::upper_bound(candidates, i); k != candidates.end(); ++k)
-      if (all[*k].box.overlaps(around))
-        if (const std::optional<ContactPair> pair = search.pair_of(all[i], all[*k])) pairs.push_back(*pair);
+      if (const std::optional<ContactPair> pair = search.pair_of(all[i], all[*k])) pairs.push_back(*pair);
   }
   return pairs;
 }

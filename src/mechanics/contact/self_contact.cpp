@@ -124,8 +124,7 @@ const BoxGrid& SelfContact::grid_of(std::span<const Vec3> x) const {
     boxes.push_back(box_of(corners).widened(rule_.search + margin()));
     longest = std::max({longest, (corners[2] - corners[0]).norm(), (corners[3] - corners[1]).norm()});
   }
-  grid_ = {{x.begin(), x.end()}, BoxGrid(std::max(rule_.search, 0.5 * longest))};
-  for (std::size_t f = 0; f < boxes.size(); ++f) grid_.facets.add(f, boxes[f]);
+  grid_ = {{x.begin(), x.end()}, BoxGrid(std::max(rule_.search, 0.5 * longest), std::move(boxes))};
   return grid_.facets;
 }
 

@@ -109,7 +109,7 @@ class SelfContact final : public Law, public LawDerivatives, public InternalChan
   /// Boxes of facets, widened by the search and a margin: they serve until a node has moved by more than the margin.
   struct KeptGrid {
     Vectors positions;  // full tissue, when it was made
-    BoxGrid facets{1};
+    BoxGrid facets;
   };
   [[nodiscard]] double margin() const { return 0.25 * rule_.search; }
   /// Return a grid whose facets near a place are at least those within the search of it.
