@@ -66,14 +66,14 @@ std::span<const std::uint32_t> BoxGrid::near(const Vec3& place) const {
   return std::span(numbers_).subspan(there.begin, there.end - there.begin);
 }
 
-void BoxGrid::find_overlapping(const Box& box, std::vector<std::uint32_t>& found) const {
+void BoxGrid::find_overlapping(const Box& box, std::vector<std::uint32_t>& found, std::size_t first) const {
   found.clear();
   if (slots_.empty()) return;
   const Cube from = cube(box.low);
   for_cubes(from, cube(box.high), [&](const Cube& cube) {
     const Slot& there = slots_[slot(key(cube))];
-    for (std::uint32_t n = there.begin; n < there.end; ++n) {
-      const std::uint32_t b = numbers_[n];
+    for (std::uint32_t n = there.end; n > there.begin && numbers_[n - 1] >= first; --n) {
+      const std::uint32_t b = numbers_[n - 1];
       // Two boxes are found in the first cube that they have in common.
       const Cube& its = first_cubes_[b];
       if (std::max(its[0], from[0]) != cube[0] || std::max(its[1], from[1]) != cube[1] ||

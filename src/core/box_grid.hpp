@@ -29,8 +29,8 @@ class BoxGrid {
 
   /// Return the boxes of the cube at the place, ascending.
   [[nodiscard]] std::span<const std::uint32_t> near(const Vec3& place) const;
-  /// Find the boxes that overlap a box, each once, ascending; replaces the content of `found`.
-  void find_overlapping(const Box& box, std::vector<std::uint32_t>& found) const;
+  /// Find the boxes from number `first` on that overlap a box, each once, ascending; replaces the content of `found`.
+  void find_overlapping(const Box& box, std::vector<std::uint32_t>& found, std::size_t first = 0) const;
 
  private:
   using Cube = std::array<std::int64_t, 3>;

@@ -92,9 +92,9 @@ std::vector<std::pair<std::size_t, std::size_t>> crossing_facets(std::span<const
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   std::vector<std::uint32_t> found;
   for (std::size_t a = 0; a < facets.size(); ++a) {
-    grid.find_overlapping(boxes[a], found);
+    grid.find_overlapping(boxes[a], found, a + 1);
     for (const std::size_t b : found)
-      if (b > a && !have_common_node(facets[a], facets[b]) && cross(fans[a], fans[b])) pairs.emplace_back(a, b);
+      if (!have_common_node(facets[a], facets[b]) && cross(fans[a], fans[b])) pairs.emplace_back(a, b);
   }
   return pairs;
 }

@@ -237,9 +237,9 @@ std::vector<ContactPair> EdgePairs::find(const Surface& surface, double distance
   std::vector<ContactPair> pairs;
   std::vector<std::uint32_t> candidates;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    grid.find_overlapping(all[i].box.widened(search.reach()), candidates);
-    for (auto k = std::ranges::upper_bound(candidates, i); k != candidates.end(); ++k)
-      if (const std::optional<ContactPair> pair = search.pair_of(all[i], all[*k])) pairs.push_back(*pair);
+    grid.find_overlapping(all[i].box.widened(search.reach()), candidates, i + 1);
+    for (const std::uint32_t k : candidates)
+      if (const std::optional<ContactPair> pair = search.pair_of(all[i], all[k])) pairs.push_back(*pair);
   }
   return pairs;
 }
