@@ -192,23 +192,29 @@ LipShape lip_shape(const Tissue& tissue, const FurrowSites& sites, std::span<con
 
   const Vec3 left = sites.lips[0].at(positions), right = sites.lips[1].at(positions);
   shape.lip_distance_um = (right - left).norm();
-  // Furrow bottom: height of the cross-section at y = 0, between the nearest points on either side.
   const auto height = [&](const Vec3& p) { return p.dot(sites.outward); };
-  Vec3 before(0, -1e300, 0), after(0, 1e300, 0);
+  std::map<CellId, Vectors> of_cells;  // section
+  for (const SurfacePoint& cut : cut_without_dimples(tissue, positions, axis_x, outward_facets(tissue, sites.outward)))
+    of_cells[tissue.apical_facets[cut.facet].cell].push_back(cut.at(positions));
+  // Furrow bottom: the lowest place where a cell's section crosses y = 0. Once the furrow is closed, its walls do so,
+  // too.
+  std::optional<double> floor;
   Vec3 highest_left = -1e300 * sites.outward, highest_right = highest_left;
-  for (const SurfacePoint& cut :
-       cut_without_dimples(tissue, positions, axis_x, outward_facets(tissue, sites.outward))) {
-    const Vec3 p = cut.at(positions);
-    if (p.y() <= 0 && p.y() > before.y()) before = p;
-    if (p.y() >= 0 && p.y() < after.y()) after = p;
-    if (p.y() <= 0 && height(p) > height(highest_left)) highest_left = p;
-    if (p.y() >= 0 && height(p) > height(highest_right)) highest_right = p;
+  for (auto& [cell, points] : of_cells) {
+    std::ranges::stable_sort(points, {}, [](const Vec3& p) { return p.y(); });
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Vec3& p = points[i];
+      if (p.y() <= 0 && height(p) > height(highest_left)) highest_left = p;
+      if (p.y() >= 0 && height(p) > height(highest_right)) highest_right = p;
+      if (i == 0 || points[i - 1].y() > 0 || p.y() < 0) continue;
+      const Vec3& before = points[i - 1];
+      const double width = p.y() - before.y(), part = width > 0 ? -before.y() / width : 0;
+      const double crossing = (1 - part) * height(before) + part * height(p);
+      if (!floor || crossing < *floor) floor = crossing;
+    }
   }
-  if (before.y() > -1e300 && after.y() < 1e300) {
-    const double width = after.y() - before.y();
-    const double part = width > 0 ? -before.y() / width : 0;
-    const double floor = (1 - part) * height(before) + part * height(after);
-    shape.depth_below_lips_um = 0.5 * (height(left) + height(right)) - floor;
+  if (floor) {
+    shape.depth_below_lips_um = 0.5 * (height(left) + height(right)) - *floor;
     shape.highest_points_distance_um = (highest_right - highest_left).norm();
   }
   return shape;
@@ -347,7 +353,8 @@ double vml_height(const M& m) {
 std::vector<Column> columns_of_furrow() {
   return {
       {"furrow_depth_below_lips_um", last,
-       "Depth of the furrow bottom (apical surface at x = y = 0) below the mean of both lips, positive inward. "
+       "Depth of the furrow bottom (lowest place of the apical surface at x = y = 0) below the mean of both lips, "
+       "positive inward. "
        "Negative for the convex reference shape; below 1 µm the ventral side is flat, not furrowed.",
        part_of(lips_of_step, &LipShape::depth_below_lips_um)},
       {"lip_distance_um", last, "Distance between the lips, which are material points. For contact, see `lips_closed`.",

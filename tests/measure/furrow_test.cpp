@@ -157,6 +157,22 @@ TEST(Furrow, DepthIsWithoutDimples) {
   EXPECT_NEAR(furrow_depth_um(tissue, sites, lowered).value(), 3, 1e-12);
 }
 
+// Walls of a closed furrow cross the middle plane by a little; its bottom is below them.
+TEST(Furrow, BottomOfAClosedFurrow) {
+  const Tissue sheet = build_block({90, 90, 10, {9, 9, 1}, {1, 1, 1}});
+  CellSet middle(sheet.cells.size());
+  for (std::size_t c = 0; c < middle.size(); ++c)
+    middle[c] = std::abs(cell_centre(sheet.cells[c], sheet.rest_positions).y()) < 35;
+  const FurrowSites sites = choose_furrow_sites(sheet, middle, 1);
+  Vectors closed = sheet.rest_positions;
+  for (Vec3& x : closed) {
+    const double from_middle = std::abs(x.y()), side = std::copysign(1.0, x.y());
+    if (from_middle > 10) x.y() = side * (from_middle > 20 ? 1 + from_middle - 25 : -0.5);
+    x.z() += std::min(from_middle, 35.0) - 35;
+  }
+  EXPECT_NEAR(lip_shape(sheet, sites, closed).depth_below_lips_um.value(), 30, 1e-10);
+}
+
 TEST(Furrow, LipsMoveWithTheTissue) {
   const Pill pill;
   const LipShape rest = lip_shape(pill.tissue, pill.sites, pill.tissue.rest_positions);
