@@ -354,8 +354,7 @@ std::vector<Column> columns_of_furrow() {
   return {
       {"furrow_depth_below_lips_um", last,
        "Depth of the furrow bottom (lowest place of the apical surface at x = y = 0) below the mean of both lips, "
-       "positive inward. "
-       "Negative for the convex reference shape; below 1 µm the ventral side is flat, not furrowed.",
+       "positive inward. Negative for the convex reference shape; below 1 µm the ventral side is flat, not furrowed.",
        part_of(lips_of_step, &LipShape::depth_below_lips_um)},
       {"lip_distance_um", last, "Distance between the lips, which are material points. For contact, see `lips_closed`.",
        part_of(lips_of_step, &LipShape::lip_distance_um)},
