@@ -1,12 +1,15 @@
 #!/usr/bin/python3
 """How many runs `plica.fit` takes: twelve keys of `furrow-slice` from twelve outcomes in three scenarios (control; myosin of the
 mesoderm inhibited; floor of the mesoderm cut), before closure. Drag is known, since only ratios of forces are identified. Targets
-come from tighter time steps, optionally another Poisson ratio, and have noise.
+come from finer elements and tighter time steps, optionally another Poisson ratio, and have noise.
 
-Usage: fit_furrow.py [--starts 10] [--first 0] [--runs 20] [--noise 0.2] [--poisson 0] [--until 12]. Prints lines of Markdown.
+Usage: fit_furrow.py [--starts 10] [--first 0] [--runs 20] [--noise 0.2] [--poisson 0] [--until 12] [--elements 1 2 2]
+[--fit-elements 1 1 1] [--mesh-error] [--keep DIR]. Prints lines of Markdown. --elements: of a cell of the target; --mesh-error adds to
+the errors of targets how much they differ between both meshes at the start. DIR keeps runs, so that the same command continues.
 """
 import argparse
 import time
+from pathlib import Path
 
 import numpy as np
 import plica
@@ -44,12 +47,18 @@ def outcomes():
     return names + ["mid_basal.position_um"]
 
 
-def targets_of(treatment, times, noise, random, changes):
-    tape = plica.record(scenario(treatment, **{"time.tolerance_um": 0.005}, **changes), at_min=times, until_min=times[-1])
+def values_of(treatment, times, changes):
+    tape = plica.record(scenario(treatment, **changes), at_min=times, until_min=times[-1])
+    return {(name, at): tape.value(name, at_min=at) for name in outcomes() for at in times}
+
+
+def targets_of(values, noise, mesh_error, random):
+    """Return targets from values with noise; the errors include that of the mesh."""
     found = {}
-    for name in outcomes():
+    for (name, at), value in values.items():
         width = next(width for ending, width in WIDTHS.items() if name.endswith(ending))
-        found[name] = {at: (tape.value(name, at_min=at) + noise * width * random.standard_normal(), width) for at in times}
+        pair = (value + noise * width * random.standard_normal(), np.hypot(width, mesh_error.get((name, at), 0)))
+        found.setdefault(name, {})[at] = pair
     return found
 
 
@@ -60,19 +69,30 @@ parser.add_argument("--runs", type=int, default=20)
 parser.add_argument("--noise", type=float, default=0.2)
 parser.add_argument("--poisson", type=float, default=0)
 parser.add_argument("--until", type=float, default=12)
+parser.add_argument("--elements", type=int, nargs=3, default=[1, 2, 2])
+parser.add_argument("--fit-elements", type=int, nargs=3, default=[1, 1, 1])
+parser.add_argument("--mesh-error", action="store_true")
+parser.add_argument("--keep", type=Path)
 wanted = parser.parse_args()
 times = [time for time in (5, 9, 12) if time <= wanted.until]
-changes = {"elasticity.poisson_ratio": wanted.poisson} if wanted.poisson else {}
-random = np.random.default_rng(0)
-targets = {treatment: targets_of(treatment, times, wanted.noise, random, changes) for treatment in TREATED}
+of_fit, changes = {"embryo.elements_per_cell": wanted.fit_elements}, {"embryo.elements_per_cell": wanted.elements}
+if wanted.poisson:
+    changes["elasticity.poisson_ratio"] = wanted.poisson
+observed = {treatment: values_of(treatment, times, {**changes, "time.tolerance_um": 0.005}) for treatment in TREATED}
 bounds = {key: (value / 2.2, value * 2.2) for key, value in TRUTH.items()}
 
 print("| start | end | runs | score | CPU (s) | largest error of a key | keys outside 95 % | open combinations |\n|" + "---|" * 8)
 for start in range(wanted.first, wanted.first + wanted.starts):
     away = np.exp(np.random.default_rng(100 + start).choice([-1, 1], len(TRUTH)) * np.log(1.5))
     at = {key: value * factor for (key, value), factor in zip(TRUTH.items(), away)}
-    begin = time.process_time()
-    found = plica.fit([(scenario(treatment, **at), targets[treatment]) for treatment in TREATED], of=bounds, runs=wanted.runs)
+    begin, experiments, random = time.process_time(), [], np.random.default_rng(0)
+    for treatment, values in observed.items():
+        error = {}
+        if wanted.mesh_error:
+            fine, coarse = (values_of(treatment, times, {**at, **mesh}) for mesh in (changes, of_fit))
+            error = {one: coarse[one] - fine[one] for one in coarse}
+        experiments.append((scenario(treatment, **at, **of_fit), targets_of(values, wanted.noise, error, random)))
+    found = plica.fit(experiments, of=bounds, runs=wanted.runs, folder=wanted.keep and wanted.keep / str(start))
     errors = {key: value / TRUTH[key] - 1 for key, value in found.values.items()}
     worst = max(errors, key=lambda key: abs(errors[key]))
     outside = [key for key, (low, high) in found.intervals(0.95).items() if not low <= TRUTH[key] <= high]

@@ -1,4 +1,5 @@
-"""Commands of the Python package: ``python -m plica labels FILE --out cells.vtp``. Others are those of the program ``plica``."""
+"""Commands of the Python package: ``python -m plica labels FILE --out cells.vtp``, and ``calibrate``, which the program ``plica``
+hands over. Others are those of the program."""
 from __future__ import annotations
 
 import argparse
@@ -7,10 +8,11 @@ import warnings
 from pathlib import Path
 from typing import Optional, Sequence
 
-from .errors import PlicaError
+from . import calibrate_command
+from .errors import FileError, NumericsError, PlicaError, ScenarioError
 from .volumes import tissue_of_labels
 
-DONE, USAGE, FILES = 0, 2, 4  # exit statuses, as those of the program
+DONE, USAGE, GAVE_UP, FILES = 0, 2, 3, 4  # exit statuses, as those of the program
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -31,30 +33,44 @@ def _parser() -> argparse.ArgumentParser:
     labels.add_argument("--keep", choices=("all", "largest"), default="all", help="pieces of tissue that become cells")
     labels.add_argument("--picture", help="picture to write: slices of the labels with the cells in outline")
     labels.add_argument("--overwrite", action="store_true", help="write over existing files")
+    calibrate_command.add_parser(commands)
     return parser
 
 
 def main(words: Optional[Sequence[str]] = None) -> int:
     """Run a command and return its exit status."""
     given = _parser().parse_args(words)
+    try:
+        return calibrate_command.calibrate(given) if given.command == "calibrate" else _labels(given)
+    except NumericsError as error:
+        return _refused(error, GAVE_UP)
+    except ScenarioError as error:
+        return _refused(error, USAGE)
+    except PlicaError as error:
+        return _refused(error, FILES)
+    except ValueError as error:
+        return _refused(error, USAGE)
+
+
+def _refused(error: Exception, status: int) -> int:
+    print(f"plica: {error}", file=sys.stderr)
+    return status
+
+
+def _labels(given: argparse.Namespace) -> int:
     for path in (given.out, given.picture):
         if path is not None and Path(path).exists() and not given.overwrite:
-            print(f"plica: {path}: exists; set --overwrite, or another name", file=sys.stderr)
-            return FILES
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # printed as remarks
-            tissue = tissue_of_labels(given.file, given.spacing_um, apical=given.apical, background=given.background, gap_px=given.gap_px,
-                                      keep_cut=given.keep_cut, keep=given.keep)
-        tissue.write(given.out)
-        if given.picture:
-            tissue.figure(given.file).savefig(given.picture, dpi=150)
-    except PlicaError as error:
-        print(f"plica: {error}", file=sys.stderr)
-        return FILES
-    except ValueError as error:
-        print(f"plica: {given.file}: {error}", file=sys.stderr)
-        return USAGE
+            raise FileError(f"{path}: exists; set --overwrite, or another name")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # printed as remarks
+        try:
+            tissue = tissue_of_labels(given.file, given.spacing_um, apical=given.apical, background=given.background,
+                                      gap_px=given.gap_px, keep_cut=given.keep_cut, keep=given.keep)
+        except ValueError as error:
+            raise ValueError(f"{given.file}: {error}") from error
+    tissue.write(given.out)
+    if given.picture:
+        tissue.figure(given.file).savefig(given.picture, dpi=150)
     for remark in tissue.remarks:
         print(f"note: {remark}")
     print(f"{given.out}: {len(tissue.cells)} cells\n{tissue.quality!r}")

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from .arguments import number, number_from, path_of, told, whole
 from .descent import End, descend
 from .errors import NumericsError, needed
+from .fit_files import write_tables
 from .fit_problem import Problem, Scale, Source, experiments_of, name_of
 from .names import in_columns, label, name_and_unit
 from .progress import Counter
@@ -193,6 +194,21 @@ class Fit:
             ax.invert_yaxis()
         return figure
 
+    def write(self, folder: Union[str, os.PathLike[str]]) -> None:
+        """Write the result into a folder: ``keys.csv``, ``targets.csv``, ``fit.txt``, each scenario, and with Matplotlib ``fit.png``.
+
+        Parameters
+        ----------
+        folder : str or path
+            Made if it does not exist; files of an earlier fit there are replaced.
+
+        Raises
+        ------
+        FileError
+            If a file cannot be written.
+        """
+        write_tables(self, Path(path_of(folder, "folder")))
+
     def __str__(self) -> str:
         rows: list[tuple[str, ...]] = [
             (key, f"{self.values[key]:.4g}", *(f"{end:.4g}" for end in ends), _at_bound(self.values[key], self.bounds[key]))
@@ -249,7 +265,8 @@ def fit(
     tolerance : float
         A start ends when the next step would lower the score by less.
     folder : path, optional
-        Folder that keeps each run, so that the same call after an interruption continues.
+        Folder that keeps each run, so that the same call after an interruption continues; at the end also the files of
+        `Fit.write`.
     threads : int
         Threads per step.
     progress : bool
@@ -313,6 +330,8 @@ def fit(
         assert failure is not None
         raise failure
     found = _result(problem, ends)
+    if folder is not None:
+        found.write(folder)
     if found.has_model_error:
         warnings.warn(f"fit: the score is {found.score:.3g} for {len(found.misses)} targets, which are missed by more than their "
                       "errors; another model or larger errors are needed", stacklevel=2)

@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arguments import number_from, path_of, text_of, texts_of, told, whole
 from .errors import FileError, NumericsError
+from .knots import divided, times_of
 from .scenario import Scenario
 from .shape_targets import ApicalFaces, CellTarget, NodeTarget, Target, target_of
 from .simulation import Simulation
@@ -310,8 +311,11 @@ class Inference:
 
     Attributes
     ----------
+    scenario : Scenario
+        Scenario of the laws. With knots in time, each law is divided there into one per knot (``"cortex.apical-at-5-min"``).
     factors : dict of str to ndarray of float
-        By law, a number per cell: factor on its strength, with mean 1; NaN where the law does not act.
+        By law, a number per cell: factor on its strength, with mean 1; NaN where the law does not act. Between knots, factors are
+        linear in time.
     sd : dict of str to ndarray of float
         Posterior standard deviation of the logarithms of factors, given prior, noise and model.
     unseen : dict of str to ndarray of float
@@ -333,6 +337,7 @@ class Inference:
         Whether the minimum was reached within `most_runs`.
     """
 
+    scenario: Scenario
     factors: dict[str, Array]
     sd: dict[str, Array]
     unseen: dict[str, Array]
@@ -347,7 +352,7 @@ class Inference:
 
     @property
     def strengths(self) -> dict[str, Array]:
-        """Factors for ``plica.record``, not divided by their mean; 1 where a law does not act."""
+        """Factors for ``plica.record`` of `scenario`, not divided by their mean; 1 where a law does not act."""
         return {law: np.where(np.isnan(factors), 1, self.scale * factors) for law, factors in self.factors.items()}
 
     def interval(self, law: str, part: float = 0.9) -> tuple[Array, Array]:
@@ -385,6 +390,7 @@ def infer(
     *,
     of: Union[str, Iterable[str]],
     noise_um: float,
+    knots_min: Optional[Iterable[float]] = None,
     surface: str = "apical",
     length_um: Optional[float] = None,
     spread: Optional[float] = None,
@@ -409,6 +415,9 @@ def infer(
         Contractions or cortices (``"cortex.apical"``).
     noise_um : float
         Standard deviation of each coordinate of nodes or centres, µm. Areas have sqrt(2 area) times that.
+    knots_min : iterable of float, optional
+        Two or more times, minutes, at which factors differ; linear in between, constant before and after, independent a priori. By
+        default factors are constant in time. Each knot adds one gradient per run.
     surface : {"apical", "basal", "all"}
         Nodes that are compared, for shapes of node positions.
     length_um : float, optional
@@ -459,10 +468,16 @@ def infer(
     for value, name in ((length_um, "length_um"), (spread, "spread")):
         if value is not None:
             number_from(value, 0, name, "a number above 0", above=True)
+    if own.to_dict()["embryo"].get("mirror"):
+        raise ValueError("scenario: embryo.mirror makes cells of both sides equal, and their factors may differ; remove it")
     simulation = Simulation(own, threads=threads)
     laws = [simulation._label(law) for law in texts_of(of, "of")]
     if not laws or len(set(laws)) < len(laws):
         raise ValueError(f"of: {told(of)}; give one contraction or cortex, or several different ones")
+    if knots_min is not None:
+        knots = times_of(knots_min)
+        laws = [part for law in laws for part in divided(own, law, knots)]
+        simulation = Simulation(own, threads=threads)
     times_min, targets = _targets(own, simulation, shapes, surface, noise)
     problem = _Problem(own, [_Field(simulation, law, length_um) for law in laws], times_min, targets, whole(threads, "threads", 1, 1024))
     descent = _Descent(problem, spread, whole(probes, "probes", 1))
@@ -571,7 +586,7 @@ def _result(descent: _Descent) -> Inference:
         return found
 
     return Inference(
-        factors=by_law(factors / scale), sd=by_law(np.sqrt(covariance)), unseen=by_law(np.minimum(covariance / prior, 1)), scale=scale,
+        scenario=problem.scenario.copy(), factors=by_law(factors / scale), sd=by_law(np.sqrt(covariance)), unseen=by_law(np.minimum(covariance / prior, 1)), scale=scale,
         times_min=np.array(problem.times_min[: descent.times]), misfit=np.sqrt(descent.misfits / counts), excess=descent.weight**-0.5,
         spread={field.law: float(one) for field, one in zip(problem.fields, descent.spreads)},
         length_um={field.law: field.length_um for field in problem.fields}, runs=problem.runs, converged=descent.converged)

@@ -8,6 +8,7 @@
 
 #include "app/options.hpp"
 #include "app/progress.hpp"
+#include "app/python_module.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/words.hpp"
@@ -19,8 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* of_gradients = "With --method gradient";  // group of options
+
 struct CalibrateOptions {
   ScenarioOptions scenario;
+  std::string method = "search";
   std::vector<std::string> vary, targets;
   std::string out;
   int trials = 40, threads = 0;
@@ -170,12 +174,52 @@ int calibrate_scenario(const CalibrateOptions& options) {
   return exit_status(calibration.end);
 }
 
+// The method by gradients is that of the Python package (docs/decisions/0016-calibration.md): pass it all options.
+int calibrate_by_gradients(const CLI::App& command) {
+  std::vector<std::string> words = {"calibrate"};
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    for (const std::string& given : option->results())
+      if (option->get_positional())
+        words.push_back(given);
+      else if (option->get_items_expected_max() == 0)
+        words.push_back(name);
+      else if (name != "--method")
+        words.push_back(name + "=" + given);
+  }
+  return become_module("calibrate --method gradient", "plica", words, "plica");
+}
+
+int calibrate_by(const CLI::App& command, const CalibrateOptions& options) {
+  if (options.method == "gradient") return calibrate_by_gradients(command);
+  for (const CLI::Option* option : command.get_options())
+    if (option->get_group() == of_gradients && option->count() > 0)
+      throw UsageError(option->get_name() + ": needs --method gradient; set it, or remove this option");
+  if (options.targets.empty()) throw UsageError("no target; give --target");
+  return calibrate_scenario(options);
+}
+
+void add_options_of_gradients(CLI::App& command) {
+  const auto add = [&](const char* name, const char* type, const std::string& meaning) {
+    return command.add_option(name, meaning)->type_name(type)->group(of_gradients);
+  };
+  add("--targets", "TEXT", "FILE.csv with columns outcome, value, sd, at_min, scenario");
+  add("--prior", "TEXT", "KEY=VALUE~SD: normal prior of a key; repeatable")->take_all()->allow_extra_args(false);
+  add("--starts", "INT", "number of starts (1)");
+  add("--early-min", "FLOAT", "fit targets until this minute first");
+  add("--folder", "TEXT", "folder for runs, so that the same command continues, and results");
+}
+
 }  // namespace
 
 void add_calibrate_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("calibrate", "fit keys of a scenario to targets");
   auto options = std::make_shared<CalibrateOptions>();
   options->scenario.add_to(*command);
+  command
+      ->add_option("--method", options->method,
+                   "search: without slopes (default); gradient: by slopes of runs (Python)")
+      ->check(CLI::IsMember({"search", "gradient"}));
   command->add_option("--vary", options->vary, "KEY=LOW:HIGH: key to fit, with bounds; repeatable")
       ->required()
       ->allow_extra_args(false);
@@ -183,17 +227,17 @@ void add_calibrate_command(CLI::App& app, int& status) {
       ->add_option(
           "--target", options->targets,
           "NAME=VALUE[~WITHIN]: target for a number of summary.json; WITHIN in its unit or as 2% (default: 0.5%); "
-          "repeatable")
-      ->required()
+          "repeatable. By gradients also at a time, NAME@MIN")
       ->allow_extra_args(false);
   add_out_option(*command, options->out, "FILE.toml to write: the fitted scenario");
   command->add_option("--trials", options->trials, "maximum number of runs (40)")->check(CLI::Range(1, 100000));
   add_threads_option(*command, options->threads);
   command->add_flag("--overwrite", options->overwrite, "replace an existing file");
+  add_options_of_gradients(*command);
   command->footer(
       "Example: plica calibrate drosophila --vary contraction.apical.stiffness_nN_per_um=3:7 --target "
       "furrow_depth_um=28.89~0.1 --out mine.toml");
-  command->callback([options, &status] { status = calibrate_scenario(*options); });
+  command->callback([command, options, &status] { status = calibrate_by(*command, *options); });
 }
 
 }  // namespace plica

@@ -89,6 +89,12 @@ class Calibrate(CommandLine):
         self.calibrate(*arguments, "--out", self.folder / "none" / "x.toml", status=4)
         self.calibrate(*arguments, "--out", self.folder / "x.txt", status=2)
 
+    def test_options_of_gradients_need_the_method(self):
+        result = self.calibrate("--vary", f"{STIFFNESS}=0.1:2", "--target", "end.position_um=25", "--starts", 2, status=2)
+        self.assertIn("--starts: needs --method gradient", result.stderr)
+        result = self.calibrate("--vary", f"{STIFFNESS}=0.1:2", status=2)
+        self.assertIn("no target; give --target", result.stderr)
+
     def test_interrupted_it_leaves_the_best_so_far(self):
         slow = SOFT.replace("step_s = 0.5", "step_s = 0.001")
         with running("calibrate", self.write(slow), "--vary", f"{STIFFNESS}=0.1:20", "--target", "end.position_um=28~1e-12", "--out", self.file) as process:

@@ -2,6 +2,7 @@
 import numpy as np
 import plica
 import pytest
+from plica.knots import divided
 from plica.shape_targets import ApicalFaces, CellTarget, target_of
 
 LAW = "cortex.apical"
@@ -90,6 +91,54 @@ def test_two_laws_at_once():
     assert found.scale == pytest.approx(mean, rel=0.02)
 
 
+def test_knots_in_time():
+    scenario = BLOCK.copy()
+    scenario.update({"cortex.apical.program": {"time_min": [0, 1], "activity": [0.5, 1]}, "time.tolerance_um": 0.02,
+                     "ablation": {"cut": {"region": "all", "at_min": 0.9, "only": [LAW]}}})
+    divided_one = scenario.copy()
+    first, last = divided(divided_one, LAW, [0, 1])
+    assert (first, last) == ("cortex.apical-at-0-min", "cortex.apical-at-1-min")
+    assert divided_one["ablation.cut.only"] == [first, last]
+    whole, parts = plica.record(scenario), plica.record(divided_one)
+    assert parts.positions() == pytest.approx(whole.positions(), abs=0.01)
+    rng = np.random.default_rng(5)
+    truth = {law: np.exp(0.3 * rng.normal(size=16)) for law in (first, last)}
+    times = [0.2, 0.5, 0.8]
+    tape = plica.record(divided_one, at_min=times, strengths=truth)
+    found = plica.infer(scenario, {time: tape.positions(time) for time in times}, of=LAW, noise_um=0.005, knots_min=[0, 1])
+    mean = np.mean(list(truth.values()))
+    for law in truth:
+        assert np.corrcoef(np.log(found.factors[law]), np.log(truth[law]))[0, 1] > 0.9
+    again = plica.record(found.scenario, at_min=times, strengths=found.strengths)
+    assert again.positions(0.8) == pytest.approx(tape.positions(0.8), abs=0.05)
+    assert found.scale == pytest.approx(mean, rel=0.1)
+
+
+def test_laws_that_cannot_be_divided():
+    for change in ({"cortex.apical.stiffness_mN_per_m": 1}, {"cortex.apical.trigger": {"measure": "apical_area_ratio", "below": 0.9}}):
+        scenario = BLOCK.copy()
+        scenario.update(change)
+        with pytest.raises(ValueError, match="give a law whose tension alone has a time course"):
+            divided(scenario, LAW, [0, 1])
+
+
+def test_mirrors_are_refused():
+    scenario = BLOCK.copy()
+    scenario["embryo.mirror"] = ["y"]
+    with pytest.raises(ValueError, match="embryo.mirror makes cells of both sides equal"):
+        plica.infer(scenario, {1: plica.Simulation(scenario).positions}, of=LAW, noise_um=0.1)
+
+
+def test_a_jump_stays_a_jump():
+    scenario = BLOCK.copy()
+    scenario["cortex.apical.program"] = {"time_s": [0, 30, 30], "activity": [1, 1, 0.25]}
+    parts = [scenario[f"{law}.program"] for law in divided(scenario, LAW, [0, 0.25, 1])]
+    times = np.array(parts[0]["time_s"])
+    total = np.sum([part["activity"] for part in parts], axis=0)
+    assert (times == 30).sum() == 2 and total[times < 30] == pytest.approx(1) and total[times > 30] == pytest.approx(0.25)
+    assert parts[1]["activity"][list(times).index(15)] == 1
+
+
 def test_gradient_of_cells_agrees_with_differences():
     simulation, faces = faces_of(BLOCK)
     rng = np.random.default_rng(0)
@@ -126,6 +175,9 @@ WRONG = [
     (dict(shapes={2: np.zeros((50, 3))}), "shapes: 2 min is after the end of the run, 1 min"),
     (dict(of="cortex.apica"), 'cortex.apica'),
     (dict(of=["apical", LAW]), "give one contraction or cortex, or several different ones"),
+    (dict(knots_min=[1]), "knots_min: 1; give two or more increasing times"),
+    (dict(knots_min=[1, 0.5]), "knots_min: 1, 0.5; give two or more increasing times"),
+    (dict(knots_min=[-1, 0.5]), "knots_min: -1; give times in minutes"),
     (dict(noise_um=0), "noise_um: 0; give a number above 0, in µm"),
     (dict(spread=-1), "spread: -1; give a number above 0"),
     (dict(surface="top"), 'surface: "top"; give "apical", "basal" or "all"'),
