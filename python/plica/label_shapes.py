@@ -18,7 +18,7 @@ from .label_repair import without_gaps
 from .labels import _junctions
 from .polygons import Polygons
 from .shape_targets import centres_and_areas
-from .volumes import tissue_of_labels
+from .volumes import NORMAL, tissue_of_labels
 
 if TYPE_CHECKING:
     import pandas
@@ -31,7 +31,6 @@ FEWEST_FOUND = 0.5   # of the cells, in each frame
 OUTLIER = 5.0        # standard deviations of the noise from a steady movement
 MOVEMENT = 0.06      # of a cell's size, and
 CHANGE = 0.1         # of the logarithm of its area: smaller departures from a steady movement are no errors
-NORMAL = 1.4826      # standard deviation of a normal distribution over the median of its absolute values
 OUTSIDE = -1         # in place of a cell
 
 
@@ -93,9 +92,10 @@ class LabelledShapes(Mapping[float, dict[str, Array]]):
         """Return one row per frame and cell: time_min, label, x_um, y_um, z_um, area_um2, height_um, doubtful."""
         times, cells = self.areas_um2.shape
         columns = dict(zip(("x_um", "y_um", "z_um"), self.centres_um.reshape(-1, 3).T))
-        return needed("pandas", "tables").DataFrame({
+        table: pandas.DataFrame = needed("pandas", "tables").DataFrame({
             "time_min": np.repeat(self.times_min, cells), "label": np.tile(self.labels, times), **columns,
             "area_um2": self.areas_um2.ravel(), "height_um": self.heights_um.ravel(), "doubtful": self.doubtful.ravel()})
+        return table
 
     def _told(self) -> list[str]:
         remarks = []
@@ -182,11 +182,13 @@ def shapes_of_labels(
     points, faces = (cells.points, cells.faces) if isinstance(cells, Polygons) else (cells.apical, cells.cells)
     meeting = _meeting(faces, np.arange(len(faces)), len(points))
     column = {met: corner for corner, met in enumerate(meeting) if meeting.count(met) == 1}
-    measured, first_shape, first_spacing = [], None, None
+    measured: list[_Measured] = []
+    first_shape: tuple[int, ...] = ()
+    first_spacing: tuple[float, ...] = ()
     for time, frame in given.items():
         what = f"frames[{time:g}]"
         array, spacing = _read(frame, spacing_um, what, isinstance(cells, Polygons))
-        if first_shape is None:
+        if not measured:
             first_shape, first_spacing = array.shape, spacing
         if array.shape != first_shape or not np.allclose(spacing, first_spacing):
             raise ValueError(f"{what}: shape {array.shape} and spacing {spacing} µm; that at 0 has {first_shape} and {first_spacing} µm: cut "
