@@ -93,8 +93,8 @@ class GivenEnergy final : public Law {
       for (std::size_t at = 0; at < kept.values.size(); at += variables() * variables()) {
         Eigen::Map<Eigen::MatrixXd> hessian(kept.values.data() + at, variables(), variables());
         const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(hessian);
-        hessian = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).asDiagonal() *
-                  solver.eigenvectors().transpose();
+        hessian =
+            solver.eigenvectors() * solver.eigenvalues().cwiseMax(0).asDiagonal() * solver.eigenvectors().transpose();
       }
     return kept.values;
   }

@@ -1,6 +1,6 @@
 # Types of the internal module made by bindings/. Not for users.
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Optional
+from typing import Any, Optional, overload
 
 import numpy as np
 from numpy.typing import NDArray

@@ -70,7 +70,8 @@ class LocalEnergy:
             if array.shape not in ((), (len(nodes),)) or not np.isfinite(array).all():
                 raise ValueError(f"{name}: shape {array.shape}; give one number, or one for each of the {len(nodes)} groups, all finite")
             self.numbers[name] = np.broadcast_to(array, (len(nodes),))
-        self._derivatives = (_of_formula if isinstance(energy, str) else _of_function)(energy, self.groups.shape[1], sorted(self.numbers))
+        names, size = sorted(self.numbers), self.groups.shape[1]
+        self._derivatives = _of_formula(energy, size, names) if isinstance(energy, str) else _of_function(energy, size, names)
 
     def __getstate__(self) -> dict[str, Any]:
         return {"energy": self.energy, "groups": self.groups, "numbers": self.numbers}
@@ -141,7 +142,7 @@ def _of_function(function: Callable[..., Any], nodes: int, names: list[str]) -> 
     if not callable(function):
         raise ValueError(f"energy: {type(function).__name__}; give a formula, or a function of positions")
     jax = needed("jax", "LocalEnergy of a function")
-    double = getattr(jax, "enable_x64", None) or jax.experimental.enable_x64
+    double = jax.enable_x64 if hasattr(jax, "enable_x64") else jax.experimental.enable_x64
 
     def one(place: Any, *given: Any) -> Any:
         return function(place.reshape(nodes, 3), **dict(zip(names, given)))
