@@ -46,11 +46,10 @@ std::vector<Vec3> stretched_half(const CellCut& cut, bool is_low, const FinalSha
   const std::vector<Vec3>& mother = of_mother.rest_to;
   auto [low, high] = halves_of_prism(cut, mother, of_mother.cuts_bend);
   std::vector<Vec3> half = is_low ? std::move(low) : std::move(high);
-  const auto middle_of = [&](std::span<const Vec3> polygon, int wall) { return place_in(polygon, {wall, 0.5}); };
   const PrismCorners whole = prism_of(mother);
-  const Vec3 basal = middle_of(whole.basal, cut.first_wall), apical = middle_of(whole.apical, cut.first_wall),
-             along =
-                 middle_of(whole.basal, cut.second_wall) - basal + middle_of(whole.apical, cut.second_wall) - apical;
+  const OutlinePlace first{cut.first_wall, cut.first_at}, second{cut.second_wall, cut.second_at};
+  const Vec3 basal = place_in(whole.basal, first), apical = place_in(whole.apical, first),
+             along = place_in(whole.basal, second) - basal + place_in(whole.apical, second) - apical;
   const Vec3 up = place_in(whole.apical, {}) - place_in(whole.basal, {});
   const Vec3 across = along.cross(up).normalized(), origin = 0.5 * (basal + apical);
   const double stretch = ratio * prism_volume(whole) / prism_volume(prism_of(half));
@@ -62,8 +61,8 @@ std::array<Growth, 2> growths_of(const PlannedDivision& plan, const std::array<C
                                  const FinalShape& mother, const Tissue& tissue, const Vectors& positions,
                                  double time_s) {
   std::array<Growth, 2> growths;
-  const bool is_hexahedron =
-      !mother.cuts_bend && mother.rest_to.size() == 8 && plan.cut.second_wall == plan.cut.first_wall + 2;
+  const bool is_hexahedron = !mother.cuts_bend && mother.rest_to.size() == 8 &&
+                             plan.cut.second_wall == plan.cut.first_wall + 2 && plan.cut.is_through_middles();
   for (const int i : {0, 1}) {
     Growth& growth = growths[i];
     const Cell& daughter = tissue.cells[daughters[i].index()];

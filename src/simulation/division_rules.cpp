@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "core/clock.hpp"
 #include "tissue/polygon_cell.hpp"
@@ -10,12 +11,22 @@
 namespace plica {
 namespace {
 
-// Polygon of a cell at half its height.
-std::vector<Vec3> mid_polygon(const Cell& cell, const Vectors& positions) {
+// Corners of a grid cell at half its height.
+std::vector<Vec3> mid_corners(const Cell& cell, const Vectors& positions) {
   std::vector<Vec3> corners;
   for (std::size_t i = 0; i < cell.sides(); ++i)
     corners.push_back(0.5 * (positions[cell.basal_corners()[i].index()] + positions[cell.apical_corners()[i].index()]));
   return corners;
+}
+
+// Stops of a polygon at half its height.
+std::vector<Vec3> mid_outline(const Sheet& sheet, CellId cell, const Vectors& positions) {
+  std::vector<Vec3> outline;
+  for (const Stop& stop : sheet.cells[cell.index()].ring) {
+    const std::vector<NodeId>& nodes = sheet.vertices[stop.vertex.index()].nodes;
+    outline.push_back(0.5 * (positions[nodes.front().index()] + positions[nodes.back().index()]));
+  }
+  return outline;
 }
 
 // Mean vector along u (0) or v (1) of a grid cell.
@@ -58,12 +69,13 @@ Spread spread_of(const std::vector<Vec3>& corners) {
   return spread;
 }
 
-double elongation(const Cell& cell, const Vectors& positions) {
-  const std::vector<Vec3> corners = mid_polygon(cell, positions);
+double elongation(const Tissue& tissue, CellId id, const Vectors& positions) {
+  const Cell& cell = tissue.cells[id.index()];
   if (!cell.is_of_grid) {
-    const Spread spread = spread_of(corners);
+    const Spread spread = spread_of(mid_outline(tissue.sheet, id, positions));
     return spread.longest / spread.least;
   }
+  const std::vector<Vec3> corners = mid_corners(cell, positions);
   const double u = mean_side(corners, 0).norm(), v = mean_side(corners, 1).norm();
   return std::max(u, v) / std::min(u, v);
 }
@@ -84,56 +96,99 @@ CellCut cut_of_grid(DivisionPlane plane, CellId id, const std::vector<Vec3>& cor
   return {id, along_u >= along_v * (1 - tie) ? 0 : 1};
 }
 
-// Element quality of both halves.
-double quality_of_halves(const CellCut& cut, const std::vector<Vec3>& corners, bool bends) {
-  const auto quality = [](const std::vector<Vec3>& half) {
-    const PrismCorners prism = prism_of(half);
-    const auto worst = [&](const std::vector<OutlineQuad>& split) { return worst_part(prism, split); };
-    return worst(best_split(corners_of_polygon(prism.apical.size()), worst));
+// Where a cut may end: a stop of a polygon, or a place on the wall after it.
+struct PossibleEnd {
+  int side;
+  double at;
+  std::size_t stop;
+  bool is_at_stop;
+  Vec3 place;
+};
+
+// Ends at which three cells then meet: middles of walls, and vertices at which two cells meet.
+std::vector<PossibleEnd> possible_ends(const Sheet& sheet, CellId id, const std::vector<Vec3>& outline,
+                                       const CutEnds& taken) {
+  const Polygon& polygon = sheet.cells[id.index()];
+  const std::size_t n = polygon.ring.size();
+  const auto beyond = [&](std::size_t i) { return sheet.walls[polygon.ring[i].wall.index()].beyond(id); };
+  const auto is_open = [&](std::size_t i) {
+    return polygon.ring[i].at > 0 && beyond(i) == beyond(i - 1) && !taken.stops.contains(polygon.ring[i].vertex);
   };
-  const auto [low, high] = halves_of_prism(cut, corners, bends);
-  return std::min(quality(low), quality(high));
+  std::vector<PossibleEnd> ends;
+  int side = -1;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Stop& stop = polygon.ring[i];
+    if (stop.at == 0) ++side;
+    if (is_open(i)) {
+      ends.push_back({side, stop.at, i, true, outline[i]});
+      continue;
+    }
+    const std::size_t next = (i + 1) % n;
+    if (is_open(next)) continue;
+    const auto add = [&](double low, double high, double part) {
+      ends.push_back({side, 0.5 * (low + high), i, false, Vec3((1 - part) * outline[i] + part * outline[next])});
+    };
+    const double end = polygon.end_of(i), middle = 0.5 * (stop.at + end);
+    if (taken.walls.contains(stop.wall)) {
+      add(stop.at, middle, 0.25);
+      add(middle, end, 0.75);
+    } else {
+      add(stop.at, end, 0.5);
+    }
+  }
+  return ends;
 }
 
-// Best cut between midpoints of two walls: minimizes the squared sine of its angle to the normal of the axis plus the
-// squared sixfold deficit of the smaller half. Cuts with poor elements, in the reference or current state, rank last.
-CellCut cut_of_polygon(DivisionPlane plane, CellId id, const std::vector<Vec3>& corners, const Tissue& tissue,
-                       const Vectors& positions) {
-  const Spread spread = spread_of(corners);
-  const int n = static_cast<int>(corners.size());
+// Twice the area of a polygon.
+double twice_area(std::span<const Vec3> polygon, const Vec3& outward) {
+  double sum = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    sum += polygon[i].cross(polygon[(i + 1) % polygon.size()]).dot(outward);
+  return sum;
+}
+
+// Best cut between two ends: minimizes the squared sine of its angle to the normal of the axis plus the squared sixfold
+// deficit of the smaller half. Cuts with poor elements rank last.
+CellCut cut_of_polygon(DivisionPlane plane, CellId id, const Tissue& tissue, const Vectors& positions, CutEnds& taken) {
+  const std::vector<Vec3> outline = mid_outline(tissue.sheet, id, positions);
+  const Spread spread = spread_of(outline);
   Vec3 axis = spread.along;
   if (plane != DivisionPlane::longest_axis) {
     const Vec3 wanted = Vec3::Unit(plane == DivisionPlane::transverse ? 0 : 1);
     const Vec3 seen = wanted - spread.outward.dot(wanted) * spread.outward;
     if (seen.norm() > 1e-6) axis = seen.normalized();  // else it is normal to the cell: any axis will do
   }
-  const auto corner = [&](int i) -> const Vec3& { return corners[i % n]; };
-  std::vector<std::pair<double, CellCut>> cuts;
-  for (int first = 0; first < n; ++first)
-    for (int second = first + 1; second < n; ++second) {
-      const Vec3 from = 0.5 * (corner(first) + corner(first + 1)), to = 0.5 * (corner(second) + corner(second + 1));
-      double part = 0, whole = 0;  // twice the areas
-      for (int i = 0; i < n; ++i) whole += corner(i).cross(corner(i + 1)).dot(spread.outward);
-      Vec3 last = from;
-      for (int i = first + 1; i <= second; ++i) {
-        part += last.cross(corner(i)).dot(spread.outward);
-        last = corner(i);
-      }
-      part += (last.cross(to) + to.cross(from)).dot(spread.outward);
-      const double sine = (to - from).normalized().dot(axis), lacks = 6 * (part / whole - 0.5);
+  const double whole = twice_area(outline, spread.outward);
+  const std::vector<PossibleEnd> ends = possible_ends(tissue.sheet, id, outline, taken);
+  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
+  for (std::size_t first = 0; first < ends.size(); ++first)
+    for (std::size_t second = first + 1; second < ends.size(); ++second) {
+      const PossibleEnd &from = ends[first], &to = ends[second];
+      if (from.side == to.side) continue;
+      std::vector<Vec3> half = {from.place};
+      for (std::size_t i = from.stop + 1; i <= to.stop; ++i) half.push_back(outline[i]);
+      half.push_back(to.place);
+      const double part = twice_area(half, spread.outward);
+      const double sine = (to.place - from.place).normalized().dot(axis), lacks = 6 * (part / whole - 0.5);
       // Compare a fixed number of digits, so that ties up to rounding keep their order.
-      cuts.emplace_back(std::round((sine * sine + lacks * lacks) / tie), CellCut{id, first, second});
+      pairs.emplace_back(std::round((sine * sine + lacks * lacks) / tie), first, second);
     }
-  std::ranges::stable_sort(cuts, {}, &std::pair<double, CellCut>::first);
-  const Cell& cell = tissue.cells[id.index()];
-  std::vector<Vec3> now;
-  for (const NodeId corner_node : cell.corners) now.push_back(positions[corner_node.index()]);
-  const bool bends = cuts_bend(tissue, id);
-  const auto sound = std::ranges::find_if(cuts, [&](const auto& one) {
-    return std::min(quality_of_halves(one.second, cell.rest_shape, bends), quality_of_halves(one.second, now, bends)) >
-           least_quality;
-  });
-  return (sound == cuts.end() ? cuts.front() : *sound).second;
+  std::ranges::stable_sort(pairs, {}, [](const auto& pair) { return std::get<0>(pair); });
+  const auto cut_of = [&](const auto& pair) {
+    const PossibleEnd &from = ends[std::get<1>(pair)], &to = ends[std::get<2>(pair)];
+    return CellCut{id, from.side, to.side, from.at, to.at};
+  };
+  const auto sound = std::ranges::find_if(
+      pairs, [&](const auto& pair) { return quality_of_daughters(tissue, cut_of(pair), positions) > least_quality; });
+  const auto& chosen = sound == pairs.end() ? pairs.front() : *sound;
+  for (const std::size_t end : {std::get<1>(chosen), std::get<2>(chosen)}) {
+    const Stop& stop = tissue.sheet.cells[id.index()].ring[ends[end].stop];
+    if (ends[end].is_at_stop)
+      taken.stops.insert(stop.vertex);
+    else
+      taken.walls.insert(stop.wall);
+  }
+  return cut_of(chosen);
 }
 
 // Quantity compared with the rule's threshold, for each cell.
@@ -145,7 +200,8 @@ std::vector<double> measured(DivisionTrigger trigger, const Model& model, const 
       return model.volumes.volumes(state.positions);
     case DivisionTrigger::elongation: {
       std::vector<double> values;
-      for (const Cell& cell : model.tissue.cells) values.push_back(elongation(cell, state.positions));
+      for (std::size_t c = 0; c < model.tissue.cells.size(); ++c)
+        values.push_back(elongation(model.tissue, CellId(c), state.positions));
       return values;
     }
     case DivisionTrigger::time:
@@ -156,10 +212,10 @@ std::vector<double> measured(DivisionTrigger trigger, const Model& model, const 
 
 }  // namespace
 
-CellCut cut_by(DivisionPlane plane, const Tissue& tissue, CellId id, const Vectors& positions) {
+CellCut cut_by(DivisionPlane plane, const Tissue& tissue, CellId id, const Vectors& positions, CutEnds& taken) {
   const Cell& cell = tissue.cells[id.index()];
-  const std::vector<Vec3> corners = mid_polygon(cell, positions);
-  return cell.is_of_grid ? cut_of_grid(plane, id, corners) : cut_of_polygon(plane, id, corners, tissue, positions);
+  return cell.is_of_grid ? cut_of_grid(plane, id, mid_corners(cell, positions))
+                         : cut_of_polygon(plane, id, tissue, positions, taken);
 }
 
 std::vector<PlannedDivision> due_divisions(const Model& model, const State& state,
@@ -167,6 +223,7 @@ std::vector<PlannedDivision> due_divisions(const Model& model, const State& stat
   std::vector<PlannedDivision> due;
   std::vector<char> growing(model.tissue.cells.size(), 0), chosen(model.tissue.cells.size(), 0);
   for (const Growth& growth : model.growths) growing[growth.cell.index()] = !has_come(growth.end_s, state.time_s);
+  CutEnds taken;
   for (const DivisionRule& rule : rules) {
     const bool at_a_time = rule.trigger == DivisionTrigger::time;
     if (at_a_time && (has_come(rule.threshold, state.divided_until_s) || !has_come(rule.threshold, state.time_s)))
@@ -180,7 +237,8 @@ std::vector<PlannedDivision> due_divisions(const Model& model, const State& stat
       if (!region[c] || chosen[c] || model.tissue.cells[c].lineage.generation >= rule.max_generation) continue;
       if (!at_a_time && (growing[c] || !(values[c] > rule.threshold))) continue;
       chosen[c] = 1;
-      due.push_back({cut_by(rule.plane, model.tissue, CellId(c), state.positions), rule.growth_s, rule.volume_ratio});
+      due.push_back(
+          {cut_by(rule.plane, model.tissue, CellId(c), state.positions, taken), rule.growth_s, rule.volume_ratio});
     }
   }
   return due;

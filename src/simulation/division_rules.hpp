@@ -1,6 +1,7 @@
 // Division rules of a scenario: which cells divide after a step, and in which plane.
 #pragma once
 
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,9 +22,16 @@ struct DivisionRule {
   int max_generation = 1;  // no division whose daughters would be of a later generation
 };
 
-/// Walls that a plane cuts, at current positions. Grid cell: across the side nearest to the plane's normal. Polygon:
-/// between the walls whose midpoints fit the plane and equal halves best.
-CellCut cut_by(DivisionPlane plane, const Tissue& tissue, CellId cell, const Vectors& positions);
+/// Ends of cuts that are made at the same time: stops, and walls cut in their middle.
+struct CutEnds {
+  std::set<VertexId> stops;
+  std::set<WallId> walls;
+};
+
+/// Cut by a plane, at current positions. Grid cell: across the side nearest to the plane's normal. Polygon: between the
+/// middles of walls that fit the plane and equal halves best. No more than three cells meet at its ends: it avoids
+/// those taken, and joins them.
+CellCut cut_by(DivisionPlane plane, const Tissue& tissue, CellId cell, const Vectors& positions, CutEnds& taken);
 
 /// Divisions due at the time of the state. Rules with a time since `State::divided_until_s` apply to every cell of
 /// their region; thresholds to cells that are not growing. A cell divides once per call, by the first rule that

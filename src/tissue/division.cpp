@@ -10,12 +10,10 @@
 namespace plica {
 namespace {
 
-constexpr double middle = 0.5;
-
-// A cell of four corners that is its own quadrilateral. A cut through opposite walls follows its lines.
+// A cell of four corners that is its own quadrilateral. A cut through the middles of opposite walls follows its lines.
 bool is_one_patch(const Polygon& polygon) { return polygon.quadrilaterals.size() == 1; }
 bool follows_lines(const Polygon& polygon, const CellCut& cut) {
-  return is_one_patch(polygon) && cut.second_wall == cut.first_wall + 2;
+  return is_one_patch(polygon) && cut.second_wall == cut.first_wall + 2 && cut.is_through_middles();
 }
 
 // Crossings of lines of the cell with the cut, along u or v.
@@ -25,11 +23,12 @@ std::vector<double> lines_across(const Polygon& polygon, const CellCut& cut) {
   return Patch(outline, polygon.quadrilaterals.front()).lines(1 - cut.first_wall);
 }
 
-// The half of a side that begins at `from`, its places stretched to 0 to 1.
-Side half_from(double from, const Side& side) {
+// Part of a side, its places stretched to 0 to 1.
+Side part_of(const Side& side, double from, double to) {
   Side part;
   for (const Stop& stop : side)
-    if (stop.at >= from && stop.at < from + middle) part.push_back({stop.vertex, stop.wall, (stop.at - from) * 2});
+    if (stop.at >= from && stop.at < to)
+      part.push_back({stop.vertex, stop.wall, rounded_place((stop.at - from) / (to - from))});
   return part;
 }
 
@@ -42,7 +41,7 @@ Side reversed(const Side& side, VertexId end) {
   return back;
 }
 
-// A cell of kites, whose middle is a node: a cut bends there and follows its lines.
+// A cell of kites, whose middle is a node: a cut bends there. Through middles of sides it follows lines.
 bool has_middle(const Polygon& polygon) { return polygon.inner.size() == 1; }
 
 using QuadVertices = std::array<VertexId, 4>;
@@ -66,7 +65,6 @@ void keep_split(const std::vector<QuadVertices>& of_mother, Polygon& daughter) {
   std::map<VertexId, OutlinePlace> places;
   int side = -1;
   for (const Stop& stop : daughter.ring) places[stop.vertex] = {side += stop.at == 0 ? 1 : 0, stop.at};
-  daughter.inner.clear();
   daughter.quadrilaterals.clear();
   for (const QuadVertices& vertices : of_mother)
     if (std::ranges::all_of(vertices, [&](VertexId vertex) { return places.contains(vertex); }))
@@ -101,8 +99,8 @@ Rings<Item> cut_ring(const CellCut& cut, std::span<const Item> ring, const std::
 
 Rings<Vec3> cut_polygon(const CellCut& cut, std::span<const Vec3> corners, bool bends) {
   const auto corner = [&](int i) { return corners[static_cast<std::size_t>(i) % corners.size()]; };
-  const auto middle_of = [&](int wall) { return Vec3(middle * corner(wall) + middle * corner(wall + 1)); };
-  const Vec3 first = middle_of(cut.first_wall), second = middle_of(cut.second_wall);
+  const Vec3 first = place_in(corners, {cut.first_wall, cut.first_at}),
+             second = place_in(corners, {cut.second_wall, cut.second_at});
   std::vector<Vec3> low = {corner(cut.first_wall), first, second}, high = {first, corner(cut.second_wall), second};
   if (bends) {
     low.insert(low.begin() + 2, place_in(corners, {}));
@@ -121,14 +119,16 @@ class Cutter {
   void cut(const CellCut& cut, const std::vector<double>& lines, double time_s) {
     const CellId a = cut.cell, b(tissue_.cells.size());
     const bool follows = follows_lines(sheet_.cells[a.index()], cut), bends = has_middle(sheet_.cells[a.index()]);
+    const bool keeps = bends && cut.is_through_middles();
     const std::vector<QuadVertices> split =
-        bends ? vertices_of_split(sheet_.cells[a.index()]) : std::vector<QuadVertices>();
+        keeps ? vertices_of_split(sheet_.cells[a.index()]) : std::vector<QuadVertices>();
     part_polygon(cut, new_wall(cut, lines));
     tissue_.cells.push_back(tissue_.cells[a.index()]);
     Cell &low = tissue_.cells[a.index()], &high = tissue_.cells[b.index()];
     std::tie(low.rest_shape, high.rest_shape) = halves_of_prism(cut, std::vector(low.rest_shape), bends);
     for (const CellId daughter : {a, b}) {
-      if (bends)
+      sheet_.cells[daughter.index()].inner.clear();
+      if (keeps)
         keep_split(split, sheet_.cells[daughter.index()]);
       else if (!follows)
         to_split_.push_back(daughter);
@@ -154,6 +154,14 @@ class Cutter {
     }
   }
 
+  // Worst element of all cells.
+  [[nodiscard]] double quality() const {
+    double worst = 1;
+    for (std::size_t c = 0; c < sheet_.cells.size(); ++c)
+      worst = std::min(worst, worst_element(CellId(c), Outline(sheet_.cells[c]), sheet_.cells[c].quadrilaterals));
+    return worst;
+  }
+
  private:
   VertexId new_vertex(const VertexMean& place) {
     Vertex vertex;
@@ -168,25 +176,28 @@ class Cutter {
     return VertexId(sheet_.vertices.size() - 1);
   }
 
-  // Vertex in the middle of a side; inserted into the wall there unless an earlier cut of a neighbour did so. Stops
-  // come from halving, so a missing one lies midway between two.
-  VertexId middle_stop(CellId cell, int side) {
-    const Outline outline(sheet_.cells[cell.index()]);
-    const Side& stops = outline.sides()[static_cast<std::size_t>(side)];
-    const auto after = std::ranges::find_if(stops, [](const Stop& stop) { return stop.at >= middle; });
-    if (after->at == middle) return after->vertex;
-    const Stop low = *(after - 1), high = *after;
-    const VertexId vertex = new_vertex({{low.vertex, middle}, {high.vertex, middle}});
-    const auto nodes = [&](VertexId one) { return std::span<const NodeId>(sheet_.vertices[one.index()].nodes); };
-    for (std::size_t level = 0; level < nodes(vertex).size(); ++level)
-      change_.node_midway.emplace(std::minmax(nodes(low.vertex)[level], nodes(high.vertex)[level]),
-                                  nodes(vertex)[level]);
-    sheet_.split_wall(low.wall, vertex);
-    change_.wall_origin.push_back(change_.wall_origin[low.wall.index()]);
-    return vertex;
+  // Vertex at a place of a side; inserted into the wall there unless it is a stop. Stops come from halving: that of a
+  // neighbour's cut is made on the way where it is missing.
+  VertexId stop_at(CellId cell, int side, double at) {
+    while (true) {
+      const Side stops = Outline(sheet_.cells[cell.index()]).sides()[static_cast<std::size_t>(side)];
+      const auto after = std::ranges::find_if(stops, [&](const Stop& stop) { return stop.at >= at; });
+      if (after->at == at) return after->vertex;
+      halve(*(after - 1), after->vertex);
+    }
   }
 
-  // New wall as sides of the low daughter, from the middle of the first side to that of the second, where the last
+  // Insert a vertex midway between a stop and the next.
+  void halve(const Stop& low, VertexId high) {
+    const VertexId vertex = new_vertex({{low.vertex, 0.5}, {high, 0.5}});
+    const auto nodes = [&](VertexId one) { return std::span<const NodeId>(sheet_.vertices[one.index()].nodes); };
+    for (std::size_t level = 0; level < nodes(vertex).size(); ++level)
+      change_.node_midway.emplace(std::minmax(nodes(low.vertex)[level], nodes(high)[level]), nodes(vertex)[level]);
+    sheet_.split_wall(low.wall, vertex);
+    change_.wall_origin.push_back(change_.wall_origin[low.wall.index()]);
+  }
+
+  // New wall as sides of the low daughter, from the place on the first side to that on the second, where the last
   // vertex is. It has stops where it crosses lines at which the mother's faces bend, so it lies on them and the volume
   // is unchanged. A node in the middle of the mother becomes a corner, since the cut bends there.
   struct NewWall {
@@ -194,7 +205,8 @@ class Cutter {
     VertexId end;
   };
   NewWall new_wall(const CellCut& cut, const std::vector<double>& lines) {
-    const VertexId from = middle_stop(cut.cell, cut.first_wall), to = middle_stop(cut.cell, cut.second_wall);
+    const VertexId from = stop_at(cut.cell, cut.first_wall, cut.first_at),
+                   to = stop_at(cut.cell, cut.second_wall, cut.second_at);
     NewWall wall{{{{from, {}, 0}}}, to};
     const Polygon& mother = sheet_.cells[cut.cell.index()];
     if (has_middle(mother)) wall.sides.push_back({{mother.inner.front(), {}, 0}});
@@ -204,7 +216,7 @@ class Cutter {
     for (const double at : lines) {
       if (at == 0 || at == 1) continue;
       const Patch patch(outline, mother.quadrilaterals.front());
-      inner.push_back({new_vertex(along_v ? patch.point(middle, at) : patch.point(at, middle)), {}, at});
+      inner.push_back({new_vertex(along_v ? patch.point(0.5, at) : patch.point(at, 0.5)), {}, at});
     }
     if (!along_v) {
       std::ranges::reverse(inner);
@@ -228,9 +240,10 @@ class Cutter {
     const std::vector<Side> sides = sheet_.cells[a.index()].sides();
     const Side &first = sides[static_cast<std::size_t>(cut.first_wall)],
                &second = sides[static_cast<std::size_t>(cut.second_wall)];
-    std::vector<Side> low = {half_from(0, first)}, high = {half_from(middle, first), half_from(0, second)};
+    std::vector<Side> low = {part_of(first, 0, cut.first_at)},
+                      high = {part_of(first, cut.first_at, 1), part_of(second, 0, cut.second_at)};
     low.insert(low.end(), between.sides.begin(), between.sides.end());
-    low.push_back(half_from(middle, second));
+    low.push_back(part_of(second, cut.second_at, 1));
     high.insert(high.end(), back.begin(), back.end());
     const Rings<Side> rings = cut_ring<Side>(cut, sides, low, high);
     sheet_.cells.push_back(sheet_.cells[a.index()]);
@@ -268,7 +281,45 @@ class Cutter {
   std::vector<CellId> to_split_;  // daughters that are no quadrilaterals
 };
 
+// A cell with its own vertices, without a mesh; `positions`: of its free nodes.
+Tissue alone(const Tissue& tissue, CellId id, std::span<const Vec3> all, Vectors& positions) {
+  Tissue one;
+  Polygon polygon = tissue.sheet.cells[id.index()];
+  std::map<VertexId, VertexId> numbers;
+  const auto take = [&](VertexId& vertex) {
+    const auto [known, is_new] = numbers.try_emplace(vertex, VertexId(one.sheet.vertices.size()));
+    if (is_new) {
+      Vertex& its = one.sheet.vertices.emplace_back(tissue.sheet.vertices[vertex.index()]);
+      for (NodeId& node : its.nodes) {
+        one.rest_positions.push_back(tissue.rest_positions[node.index()]);
+        positions.push_back(all[node.index()]);
+        node = NodeId(positions.size() - 1);
+      }
+    }
+    vertex = known->second;
+  };
+  for (Stop& stop : polygon.ring) take(stop.vertex);
+  for (VertexId& vertex : polygon.inner) take(vertex);
+  one.sheet.cells.push_back(std::move(polygon));
+  one.sheet.connect();
+  one.cells.push_back(tissue.cells[id.index()]);
+  return one;
+}
+
 }  // namespace
+
+double quality_of_daughters(const Tissue& tissue, const CellCut& cut, std::span<const Vec3> positions) {
+  Vectors places;
+  Tissue one = alone(tissue, cut.cell, positions, places);
+  TissueChange change = no_change(one);
+  CellCut its = cut;
+  its.cell = CellId(0);
+  const std::vector<double> lines = lines_across(one.sheet.cells[0], its);
+  Cutter cutter(one, std::move(places), change);
+  cutter.cut(its, lines, 0);
+  cutter.split_daughters();
+  return cutter.quality();
+}
 
 std::pair<std::vector<Vec3>, std::vector<Vec3>> halves_of_prism(const CellCut& cut, const std::vector<Vec3>& corners,
                                                                 bool bends) {

@@ -262,7 +262,7 @@ VertexMean Patch::point(double u, double v) const {
     add(0, u, 1 - v), add(2, u, v), add(3, v, 1 - u), add(1, v, u);
     add(0, 0, -(1 - u) * (1 - v)), add(0, 1, -u * (1 - v)), add(2, 0, -(1 - u) * v), add(2, 1, -u * v);
   }
-  std::erase_if(sum, [](const auto& one) { return one.second == 0; });
+  std::erase_if(sum, [](const auto& one) { return std::abs(one.second) < 1e-14; });
   return sum;
 }
 

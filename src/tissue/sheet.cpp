@@ -7,15 +7,11 @@
 #include "tissue/mesh_input.hpp"
 
 namespace plica {
-namespace {
 
-// A place on a side as a multiple of 2^-32, so that places from either end are the same.
-double part_of_side(std::size_t part, std::size_t parts) {
+double rounded_place(double at) {
   constexpr double unit = 1.0 / (std::int64_t{1} << 32);
-  return unit * std::round(static_cast<double>(part) / static_cast<double>(parts) / unit);
+  return unit * std::round(at / unit);
 }
-
-}  // namespace
 
 std::vector<Side> Polygon::sides() const {
   std::vector<Side> sides;
@@ -102,7 +98,7 @@ Polygon& SheetOfColumns::add_cell(bool has_basal, bool has_apical) {
 
 void SheetOfColumns::add_side(const std::vector<Column>& stops) {
   for (std::size_t i = 0; i < stops.size(); ++i) {
-    const Stop stop{vertex_of(stops[i]), {}, part_of_side(i, stops.size())};
+    const Stop stop{vertex_of(stops[i]), {}, rounded_place(static_cast<double>(i) / static_cast<double>(stops.size()))};
     sheet_.cells.back().ring.push_back(stop);
     places_[stop.vertex] = {sides_, stop.at};
   }

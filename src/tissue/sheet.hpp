@@ -34,6 +34,9 @@ struct Wall {
   [[nodiscard]] CellId beyond(CellId cell) const { return cells[cells[0] == cell ? 1 : 0]; }
 };
 
+/// Round a place on a side to a multiple of 2^-32, so that it is the same from either end.
+double rounded_place(double at);
+
 /// Vertex on the outline of a polygon: a corner, or a stop on a side, where the neighbour has a corner or a line ends.
 struct Stop {
   VertexId vertex;

@@ -323,8 +323,9 @@ TEST(SurfaceMesh, OfDividedCellsHasNoGaps) {
   Vectors positions = tissue.rest_positions;
   for (int round = 0; round < 2; ++round) {
     std::vector<CellCut> cuts;
+    CutEnds taken;
     for (std::size_t c = 7; c < tissue.cells.size(); c += 4)
-      cuts.push_back(cut_by(DivisionPlane::longest_axis, tissue, CellId(c), positions));
+      cuts.push_back(cut_by(DivisionPlane::longest_axis, tissue, CellId(c), positions, taken));
     const TissueChange division = divide(tissue, cuts, 0, positions);
     positions = with_new_nodes(tissue, division, positions);
     for (Vec3& x : positions) x += Vec3(0.3 * std::sin(x.y()), 0.3 * std::cos(2 * x.x()), 0);

@@ -32,6 +32,15 @@ inline double volume_of_cells(const Tissue& tissue, const Vectors& positions) {
   return volume;
 }
 
+/// Largest number of cells that meet at a vertex.
+inline std::size_t most_cells_at_a_vertex(const Sheet& sheet) {
+  std::map<VertexId, std::size_t> cells;
+  std::size_t most = 0;
+  for (const Polygon& polygon : sheet.cells)
+    for (const Stop& stop : polygon.ring) most = std::max(most, ++cells[sheet.original_of(stop.vertex)]);
+  return most;
+}
+
 /// A random choice of cells and walls; `part` of all cells.
 inline std::vector<PlannedDivision> random_divisions(const Tissue& tissue, double part, Random& random) {
   std::vector<PlannedDivision> planned;

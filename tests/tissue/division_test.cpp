@@ -220,12 +220,13 @@ Tissue egg(PolygonSplit split = PolygonSplit::diagonals, int layers = 1) {
 // Across the longest axis, along the embryo or across it, of cells at random.
 std::vector<CellCut> random_cuts(const Tissue& tissue, const Vectors& positions, std::size_t count, Random& random) {
   std::vector<CellCut> cuts;
+  CutEnds taken;
   std::set<std::size_t> chosen;
   constexpr std::array planes = {DivisionPlane::longest_axis, DivisionPlane::transverse, DivisionPlane::sagittal};
   while (cuts.size() < count) {
     const auto c = static_cast<std::size_t>(0.5 * (random.number() + 1) * static_cast<double>(tissue.cells.size() - 1));
     if (!chosen.insert(c).second) continue;
-    cuts.push_back(cut_by(planes[cuts.size() % 3], tissue, CellId(c), positions));
+    cuts.push_back(cut_by(planes[cuts.size() % 3], tissue, CellId(c), positions, taken));
   }
   return cuts;
 }
@@ -259,6 +260,7 @@ Errors divide_three_times(Tissue tissue, double size_um, unsigned seed) {
     const TissueChange division = divide(tissue, cuts, round, positions);
     positions = with_new_nodes(tissue, division, positions);
     errors.divisions += static_cast<int>(cuts.size());
+    EXPECT_EQ(most_cells_at_a_vertex(tissue.sheet), 3u);
     errors.least_jacobian = std::min(errors.least_jacobian, worst_element(tissue, positions));
     for (const Cell& cell : tissue.cells)
       if (before.contains(cell.lineage.id))
@@ -345,7 +347,8 @@ TEST(PolygonDivision, CutsAcrossTheLongestAxisIntoHalves) {
   const Tissue tissue = tissue_from_prisms(sheet, PolygonSplit::diagonals, 1);
   for (const auto& [plane, axis] :
        {std::pair(DivisionPlane::longest_axis, 0), {DivisionPlane::transverse, 0}, {DivisionPlane::sagittal, 1}}) {
-    const CellCut cut = cut_by(plane, tissue, CellId(4), tissue.rest_positions);
+    CutEnds taken;
+    const CellCut cut = cut_by(plane, tissue, CellId(4), tissue.rest_positions, taken);
     EXPECT_EQ(cut.second_wall - cut.first_wall, 3);
     const auto middle_of = [&](int wall) {
       const auto corners = tissue.cells[4].apical_corners();
@@ -354,6 +357,63 @@ TEST(PolygonDivision, CutsAcrossTheLongestAxisIntoHalves) {
     };
     const Vec3 way = (middle_of(cut.second_wall) - middle_of(cut.first_wall)).normalized();
     EXPECT_LE(std::abs(way[axis]), std::sqrt(4.0 / 7) + 1e-9) << axis;  // the best of three ways
+  }
+}
+
+// Every cell at once: cuts of neighbours end beside each other, so a cell within has six neighbours on average.
+TEST(PolygonDivision, OfAllCellsLeavesThreeAtEachVertex) {
+  Tissue tissue = tissue_from_prisms(irregular_polygons(10, 10, 8, 20, 0.1, 1), PolygonSplit::diagonals, 1);
+  for (int round = 0; round < 2; ++round) {
+    std::vector<CellCut> cuts;
+    CutEnds taken;
+    for (std::size_t c = 0; c < tissue.cells.size(); ++c)
+      cuts.push_back(cut_by(DivisionPlane::longest_axis, tissue, CellId(c), tissue.rest_positions, taken));
+    divide(tissue, cuts, round);
+    EXPECT_EQ(most_cells_at_a_vertex(tissue.sheet), 3u);
+  }
+  EXPECT_EQ(tissue.cells.size(), 400u);
+  const auto neighbours = wall_neighbours(tissue);
+  double sum = 0;
+  int within = 0;
+  for (std::size_t c = 0; c < 400; ++c) {
+    const auto is_at_rim = [&](CellId cell) {
+      return std::ranges::any_of(tissue.sheet.cells[cell.index()].ring, [&](const Stop& stop) {
+        return !tissue.sheet.walls[stop.wall.index()].beyond(cell).valid();
+      });
+    };
+    if (is_at_rim(CellId(c)) || std::ranges::any_of(neighbours[c], is_at_rim)) continue;
+    sum += static_cast<double>(neighbours[c].size());
+    ++within;
+  }
+  EXPECT_GT(within, 200);
+  EXPECT_NEAR(sum / within, 6, 0.1);
+  EXPECT_GT(worst_element(tissue, tissue.rest_positions), 0.05);
+}
+
+// A neighbour was cut before: rest shapes are parts of the mother's also where a cut ends beside its stop.
+TEST(PolygonDivision, BesideTheStopOfANeighbourKeepsPlaces) {
+  for (const PolygonSplit split : {PolygonSplit::diagonals, PolygonSplit::kites}) {
+    Tissue tissue = tissue_from_prisms(honeycomb(3, 3, 8, 20), split, 1);
+    const CellId beside = tissue.sheet.walls[tissue.sheet.cells[4].sides()[0].front().wall.index()].beyond(CellId(4));
+    divide(tissue, std::vector<CellCut>{{CellId(4), 0, 3}}, 0);
+    const std::vector<Side> sides = tissue.sheet.cells[beside.index()].sides();
+    int shared = 0;  // with both daughters
+    while (tissue.sheet.walls[sides[static_cast<std::size_t>(shared)].back().wall.index()].beyond(beside) !=
+               CellId(4) &&
+           tissue.sheet.walls[sides[static_cast<std::size_t>(shared)].front().wall.index()].beyond(beside) != CellId(4))
+      ++shared;
+    const CellCut cut =
+        shared < 3 ? CellCut{beside, shared, shared + 3, 0.25, 0.5} : CellCut{beside, shared - 3, shared, 0.5, 0.25};
+    const double sum = volume_of_cells(tissue, tissue.rest_positions);
+    const TissueChange change = divide(tissue, std::vector<CellCut>{cut}, 0);
+    EXPECT_EQ(most_cells_at_a_vertex(tissue.sheet), 3u);
+    EXPECT_NEAR(volume_of_cells(tissue, tissue.rest_positions), sum, 1e-9);
+    for (const CellId id : change.daughters[0]) {
+      const Cell& cell = tissue.cells[id.index()];
+      for (std::size_t i = 0; i < cell.corners.size(); ++i)
+        EXPECT_LE((tissue.rest_positions[cell.corners[i].index()] - cell.rest_shape[i]).norm(), 1e-9);
+      EXPECT_NEAR(rest_volume(tissue, cell), cell_volume(tissue, cell, tissue.rest_positions), 1e-8);
+    }
   }
 }
 

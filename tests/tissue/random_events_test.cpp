@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "measure/self_intersections.hpp"
+#include "simulation/division_rules.hpp"
 #include "support/divided.hpp"
 #include "support/prisms.hpp"
 #include "support/turns.hpp"
@@ -67,11 +68,12 @@ class RandomEvents {
   void divide_cells() {
     for (int tried = 0; tried < 4; ++tried) {
       const CellId cell = any_cell();
-      const int walls = static_cast<int>(tissue_.cells[cell.index()].sides());
-      if (walls < 4) continue;
-      const int first = static_cast<int>(0.5 * (random_.number() + 1) * (walls - walls / 2 - 1e-9));
+      CutEnds taken;
       Tissue cut = tissue_;
-      const TissueChange change = divide(cut, std::vector<CellCut>{{cell, first, first + walls / 2}}, 0, positions_);
+      const std::vector<CellCut> its = {
+          cut_by(random_.number() < 0 ? DivisionPlane::transverse : DivisionPlane::sagittal, tissue_, cell, positions_,
+                 taken)};
+      const TissueChange change = divide(cut, its, 0, positions_);
       const Vectors now = with_new_nodes(cut, change, positions_);
       if (!(worst_of(cut, now) > 0.02)) {
         ++refused;
@@ -130,6 +132,7 @@ class RandomEvents {
 
   void check() {
     expect_symmetric(tissue_);
+    EXPECT_EQ(most_cells_at_a_vertex(tissue_.sheet), 3u);
     least = std::min(least, worst_of(tissue_, positions_));
     gap =
         std::max(gap, std::abs(volume_of_cells(tissue_, positions_) / volume_inside_boundary(tissue_, positions_) - 1));
