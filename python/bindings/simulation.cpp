@@ -15,6 +15,7 @@
 #include "core/units.hpp"
 #include "core/version.hpp"
 #include "errors.hpp"
+#include "given_energy.hpp"
 #include "measure/cell_columns.hpp"
 #include "measure/cells.hpp"
 #include "measure/walls.hpp"
@@ -31,10 +32,15 @@
 namespace plica::python {
 namespace {
 
-std::unique_ptr<Simulation> simulation_of(const Scenario& scenario, int threads) {
+std::unique_ptr<Simulation> simulation_of(const Scenario& scenario, int threads, const nb::list& energies) {
   const nb::gil_scoped_release free;
   const SafeThreadCount count(threads);
-  return std::make_unique<Simulation>(scenario);
+  Simulation::Parts parts = parts_of(scenario);
+  {
+    const nb::gil_scoped_acquire lock;
+    add_energies(energies, parts);
+  }
+  return std::make_unique<Simulation>(std::move(parts));
 }
 
 nb::dict measures(const Simulation& simulation) {
@@ -178,14 +184,15 @@ SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, std::un
   simulation_->stop_when([this] { return (record_ && record_->has_failed()) || signals_.have_come(); });
 }
 
-SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads)
-    : SimulationOf(scenario, threads, simulation_of(scenario.scenario, threads), "") {
+SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, const nb::list& energies)
+    : SimulationOf(scenario, threads, simulation_of(scenario.scenario, threads, energies), "") {
   threads_ = threads_for(threads, simulation_->model().tissue.elements.size());
   at_rest_ = fingerprint(simulation_->model().tissue);
 }
 
-SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, const nb::bytes& saved)
-    : SimulationOf(scenario, threads) {
+SimulationOf::SimulationOf(const CheckedScenario& scenario, int threads, const nb::bytes& saved,
+                           const nb::list& energies)
+    : SimulationOf(scenario, threads, energies) {
   Checkpoint checkpoint = read_checkpoint_bytes({saved.c_str(), saved.size()});
   if (checkpoint.at_rest != at_rest_)
     throw FileError(
@@ -286,9 +293,10 @@ void bind_simulation(nb::module_& module) {
       .def("add", &TimeLeft::add, nb::arg("elapsed_s"), nb::arg("time_s"), nb::arg("fastest_um_per_s"))
       .def_prop_ro("text", &TimeLeft::text);
   nb::class_<S>(module, "Simulation")
-      .def(nb::init<const CheckedScenario&, int>(), nb::arg("scenario"), nb::arg("threads"))
-      .def(nb::init<const CheckedScenario&, int, const nb::bytes&>(), nb::arg("scenario"), nb::arg("threads"),
-           nb::arg("saved"))
+      .def(nb::init<const CheckedScenario&, int, const nb::list&>(), nb::arg("scenario"), nb::arg("threads"),
+           nb::arg("energies") = nb::list())
+      .def(nb::init<const CheckedScenario&, int, const nb::bytes&, const nb::list&>(), nb::arg("scenario"),
+           nb::arg("threads"), nb::arg("saved"), nb::arg("energies") = nb::list())
       .def("copy", &S::copy)
       .def("step", &S::step, nb::arg("until_s"))
       .def("set_activity", &S::set_activity, nb::arg("law"), nb::arg("activities"))

@@ -27,10 +27,10 @@ struct CheckedScenario {
 /// rejected.
 class SimulationOf {
  public:
-  /// Make a simulation; `threads`: 0 for the default of the tissue.
-  SimulationOf(const CheckedScenario& scenario, int threads);
+  /// Make a simulation; `threads`: 0 for the default of the tissue; `energies`: as add_energies has them.
+  SimulationOf(const CheckedScenario& scenario, int threads, const nb::list& energies);
   /// Restore the state at which save() was called.
-  SimulationOf(const CheckedScenario& scenario, int threads, const nb::bytes& saved);
+  SimulationOf(const CheckedScenario& scenario, int threads, const nb::bytes& saved, const nb::list& energies);
   /// Return an independent copy, which does not record.
   [[nodiscard]] std::unique_ptr<SimulationOf> copy();
 

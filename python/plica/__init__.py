@@ -26,6 +26,7 @@ from .posteriors import Posterior, posterior
 from .results import Frame, Frames, Run
 from .results import open_run as open
 from .scenario import Scenario, builtin_scenarios
+from .local_energy import LocalEnergy
 from .simulation import Simulation, Step, load
 from .studio import studio
 from .study import Study
@@ -46,6 +47,7 @@ __all__ = [
     "Frames",
     "GradientCheck",
     "Inference",
+    "LocalEnergy",
     "Miss",
     "MissingExtra",
     "NumericsError",

@@ -100,7 +100,8 @@ PACKAGES = {"pandas": ("pandas", "plot"), "matplotlib": ("matplotlib", "plot"), 
             "skimage": ("scikit-image", "image"), "scipy": ("scipy", "image"), "imageio": ("imageio", "movie"),
             "imageio_ffmpeg": ("imageio-ffmpeg", "movie"), "tables": ("tables", "tyssue"), "tifffile": ("tifffile", "image"),
             "zarr": ("zarr", "image"), "starlette": ("starlette", "studio"), "uvicorn": ("uvicorn", "studio"),
-            "websockets": ("websockets", "studio"), "jax": ("jax", "jax"), "torch": ("torch", "torch")}
+            "websockets": ("websockets", "studio"), "jax": ("jax", "jax"), "torch": ("torch", "torch"),
+            "sympy": ("sympy", "formula")}
 
 
 def needed(module: str, what: str) -> Any:

@@ -18,6 +18,7 @@ from . import _core
 from .arguments import callable_of, number, path_of, per_cell, text_of, whole
 from .cell_data import CellData, Signals
 from .errors import FileError
+from .local_energy import LocalEnergy
 from .progress import Progress, moment
 from .results import Run, _grid, _pandas, open_run
 from .scenario import Scenario
@@ -81,11 +82,15 @@ class Simulation:
         The scenario or its source (see `Scenario`). It is copied: later changes to it have no effect.
     threads : int, optional
         Threads per step; by default one for every 10 000 elements. Results are bitwise identical for any number.
+    energies : dict of str to LocalEnergy, optional
+        Further force laws, by name.
 
     Raises
     ------
     ScenarioError
         If an error shows only when the tissue is built.
+    ValueError
+        If a group of `energies` has a node that the tissue has not, or the scenario changes the nodes.
 
     Notes
     -----
@@ -102,9 +107,11 @@ class Simulation:
     5.1
     """
 
-    def __init__(self, scenario: Union[Scenario, str, os.PathLike[str], Mapping[str, Any]], *, threads: Optional[int] = None) -> None:
+    def __init__(self, scenario: Union[Scenario, str, os.PathLike[str], Mapping[str, Any]], *, threads: Optional[int] = None,
+                 energies: Optional[Mapping[str, LocalEnergy]] = None) -> None:
         own = scenario.copy() if isinstance(scenario, Scenario) else Scenario(scenario)
-        core = _core.Simulation(own._ready, _threads(threads))
+        self._local = _local(energies)
+        core = _core.Simulation(own._ready, _threads(threads), energies=self._local)
         own._check_masks(len(core.pressures))
         self._begin(own, core)
 
@@ -399,6 +406,7 @@ class Simulation:
         >>> fork.set_activity("apical", 0)
         """
         other = object.__new__(Simulation)
+        other._local = self._local
         other._begin(self._scenario.copy(), self._core.copy())
         return other
 
@@ -426,11 +434,11 @@ class Simulation:
             raise FileError(f"{target}: cannot be written: {error.strerror}") from error
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"scenario": self._scenario, "saved": self._core.save(), "threads": self._core.threads}
+        return {"scenario": self._scenario, "saved": self._core.save(), "threads": self._core.threads, "local": self._local}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        scenario = state["scenario"]
-        self._begin(scenario, _core.Simulation(scenario._ready, state["threads"], state["saved"]))
+        scenario, self._local = state["scenario"], state["local"]
+        self._begin(scenario, _core.Simulation(scenario._ready, state["threads"], state["saved"], energies=self._local))
 
     # Present state
 
@@ -623,6 +631,7 @@ def load(
     threads: Optional[int] = None,
     tissue: Optional[Tissue] = None,
     arrays: Optional[Mapping[str, ArrayLike]] = None,
+    energies: Optional[Mapping[str, LocalEnergy]] = None,
 ) -> Simulation:
     """Load a saved simulation or the checkpoint of a run; it continues bitwise identically.
 
@@ -632,8 +641,8 @@ def load(
         File written by ``Simulation.save``, or the ``checkpoint.h5`` of a run.
     threads : int, optional
         Threads per step, as for `Simulation`.
-    tissue, arrays : optional
-        Tissue and arrays that the scenario was given from Python, if any.
+    tissue, arrays, energies : optional
+        Tissue, arrays and energies that it was given from Python, if any.
 
     Returns
     -------
@@ -660,12 +669,21 @@ def load(
     try:
         scenario = Scenario(_core.scenario_of_saved(saved), tissue=tissue, arrays=arrays)
         simulation = object.__new__(Simulation)
-        simulation._begin(scenario, _core.Simulation(scenario._ready, _threads(threads), saved))
+        simulation._local = _local(energies)
+        simulation._begin(scenario, _core.Simulation(scenario._ready, _threads(threads), saved, energies=simulation._local))
     except FileError as error:
         raise FileError(f"{source}: {error}") from error
     except UnicodeDecodeError as error:
         raise FileError(f"{source}: is damaged: its scenario is not valid text") from error
     return simulation
+
+
+def _local(energies: Optional[Mapping[str, LocalEnergy]]) -> list[tuple[str, NDArray[np.int32], LocalEnergy]]:
+    for name, energy in (energies or {}).items():
+        text_of(name, "energies")
+        if not isinstance(energy, LocalEnergy):
+            raise ValueError(f"energies: {name}: {type(energy).__name__}; give a LocalEnergy")
+    return [(name, energy.groups, energy) for name, energy in (energies or {}).items()]
 
 
 def _threads(threads: Optional[int]) -> int:

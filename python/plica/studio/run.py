@@ -209,6 +209,7 @@ class StudioRun:
     def _loaded(self, checkpoint: Path) -> Simulation:
         """Return this scenario's simulation in the state of a checkpoint, which may be of another scenario."""
         sim = object.__new__(Simulation)
+        sim._local = []
         sim._begin(self.scenario, _core.Simulation(self.scenario._ready, self.threads or 0, checkpoint.read_bytes()))
         return sim
 

@@ -1,0 +1,139 @@
+"""Force laws from an energy of a few nodes: derivatives, forces in a run, threads, copies and files, refusals."""
+import os
+import pickle
+import subprocess
+
+import numpy as np
+import pytest
+
+import plica
+from plica import FileError, LocalEnergy
+
+pytest.importorskip("sympy")
+
+SHEET = {"embryo": {"shape": "block", "length_um": 40, "width_um": 40, "cell_height_um": 20, "cells": [4, 4, 1]},
+         "time": {"end_s": 60}}
+SPRING = "k / 2 * (length(0, 1) - L) ** 2"
+
+
+@pytest.fixture(scope="module")
+def columns():
+    """Nodes at the lower and upper end of an edge of each element."""
+    return plica.Simulation(SHEET).hexahedra[:, [0, 4]]
+
+
+def springs(columns, **numbers):
+    return {"springs": LocalEnergy(SPRING, columns, **{"k": 2, "L": 15, **numbers})}
+
+
+def run(energies, threads=1, seconds=60):
+    sim = plica.Simulation(SHEET, threads=threads, energies=energies)
+    sim.run(until_min=seconds / 60)
+    return sim
+
+
+@pytest.mark.parametrize("formula, nodes", [
+    (SPRING, 2), ("k * (area(0, 1, 2) + exp(-length(0, 2) / L))", 3), ("k * (volume(0, 1, 2, 3) - L) ** 2", 4),
+    ("k * x0 * sin(y1 / L) + log(L + z0 ** 2) - atan2(x1, 3)", 2)])
+def test_derivatives_agree_with_differences(formula, nodes):
+    random = np.random.default_rng(3)
+    x = random.normal(size=(5, 3 * nodes))
+    energy = LocalEnergy(formula, np.arange(5 * nodes).reshape(5, nodes), k=1.5, L=random.uniform(1, 2, 5))
+    h = 1e-5
+    for order in (1, 2):
+        slopes = energy(x, order)
+        for i in range(3 * nodes):
+            step = h * np.eye(3 * nodes)[i]
+            change = (energy(x + step, order - 1) - energy(x - step, order - 1)) / (2 * h)
+            assert np.allclose(slopes[..., i], change, rtol=1e-7, atol=1e-8)
+
+
+def test_springs_pull_with_their_tension_and_cells_shorten(columns):
+    sim = plica.Simulation(SHEET, energies=springs(columns, L=np.full(len(columns), 15.0)))
+    assert "energy.springs" in sim.laws
+    forces = np.zeros_like(sim.positions)
+    np.add.at(forces, columns[:, 0], [0, 0, 2 * 5])  # k (20 - L), towards each other
+    np.add.at(forces, columns[:, 1], [0, 0, -2 * 5])
+    assert np.allclose(sim.forces("energy.springs"), forces, atol=1e-12)
+    sim.run()
+    lengths = np.linalg.norm(np.subtract(*sim.positions[columns.T]), axis=1)
+    assert 15 < lengths.max() < 19
+    stored = (lengths - 15) ** 2 - 5**2
+    assert sim.energies["energy.springs"]["stored"] == pytest.approx(stored.sum(), rel=1e-9)
+    assert sim.measures["max_volume_error"] < 1e-9
+
+
+def test_threads_copies_and_files_go_on_to_the_same_bits(columns, tmp_path):
+    given = springs(columns)
+    whole = run(given, threads=2)
+    half = run(given, seconds=30)
+    half.save(tmp_path / "half.h5")
+    saved = plica.load(tmp_path / "half.h5", energies=given)
+    pickled = pickle.loads(pickle.dumps(half))
+    for sim in (half.copy(), saved, pickled):
+        sim.run()
+        assert np.array_equal(sim.positions, whole.positions)
+    with pytest.raises(FileError, match="laws"):
+        plica.load(tmp_path / "half.h5")
+
+
+def test_a_recorded_run_is_not_continued_without_its_law(columns, tmp_path):
+    sim = plica.Simulation(SHEET, energies=springs(columns))
+    sim.run(until_min=0.5, out=tmp_path / "out")
+    told = subprocess.run([os.environ["PLICA"], "run", "--resume", "--out", tmp_path / "out"], capture_output=True, text=True)
+    assert told.returncode != 0 and "laws" in told.stderr
+    plica.Simulation(SHEET, energies=springs(columns)).run(out=tmp_path / "out", resume=True)
+    assert np.array_equal(plica.open_run(tmp_path / "out").frames[-1].positions, run(springs(columns)).positions)
+
+
+def test_functions_in_jax(columns):
+    jnp = pytest.importorskip("jax.numpy")
+    by_jax = LocalEnergy(lambda x, k, L: k / 2 * (jnp.linalg.norm(x[1] - x[0]) - L) ** 2, columns, k=2, L=15)
+    apart = np.abs(run({"springs": by_jax}).positions - run(springs(columns)).positions).max()
+    assert apart < 1e-8
+
+
+@pytest.mark.parametrize("make, text", [
+    (lambda c: LocalEnergy("k * length(0, 1)", c), "'k' has no value"),
+    (lambda c: LocalEnergy("2 * length(0, 1", c), "cannot be read"),
+    (lambda c: LocalEnergy("length(0, 2)", c), "cannot be read"),
+    (lambda c: LocalEnergy("x0; y0", c), "give a formula"),
+    (lambda c: LocalEnergy("__import__(0)", c), "has no value"),
+    (lambda c: LocalEnergy(3, c), "give a formula, or a function"),
+    (lambda c: LocalEnergy("x0", c.ravel()), "groups"),
+    (lambda c: LocalEnergy("x0", c + 0.5), "groups"),
+    (lambda c: LocalEnergy("k * x0", c, k=[1, 2]), "one for each of the 16 groups"),
+    (lambda c: LocalEnergy("k * x0", c, k=np.nan), "all finite"),
+    (lambda c: run({"far": LocalEnergy("x0", c + 1000)}), "node 10.*give nodes from 0 to"),
+    (lambda c: run({"spring": SPRING}), "give a LocalEnergy"),
+    (lambda c: run({"wrong": LocalEnergy("sqrt(x0 - 1000)", c)}), r"energy of group 0 \(nodes \[.*is not finite"),
+])
+def test_what_cannot_be_is_refused_with_a_reason(columns, make, text):
+    with pytest.raises(ValueError, match=text):
+        make(columns)
+
+
+def test_nodes_have_to_stay(columns):
+    for more, text in [({"embryo": {**SHEET["embryo"], "mirror": ["y"]}}, "remove embryo.mirror"),
+                       ({"division": {"one": {"at_s": 10, "ids": [5]}}}, "remove division")]:
+        with pytest.raises(ValueError, match=text):
+            plica.Simulation({**SHEET, **more}, energies=springs(columns))
+
+
+def test_an_error_in_a_function_is_the_users_and_the_state_stays(columns):
+    class Faulty(LocalEnergy):
+        calls = 0
+
+        def __call__(self, positions, order):
+            Faulty.calls += 1
+            if Faulty.calls > 20:
+                raise KeyError("mine")
+            return super().__call__(positions, order)
+
+    sim = plica.Simulation(SHEET, energies={"faulty": Faulty(SPRING, columns, k=2, L=15)})
+    with pytest.raises(KeyError, match="mine"):
+        sim.run()
+    time_s, positions = sim.time_s, sim.positions
+    Faulty.calls = -10**9
+    sim.run()
+    assert time_s < 60 and sim.time_s == 60 and not np.array_equal(positions, sim.positions)
