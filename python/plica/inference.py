@@ -42,6 +42,7 @@ LARGEST_CHANGE = 0.7  # of a log factor in one iteration
 CONVERGED = 0.003  # mean squared distance from the minimum, in units of posterior variances; an estimate, low by up to a factor of 5
 CONVERGED_EARLY = 0.5  # the same while later shapes are not compared yet
 SLOW, SLOW_AFTER = 0.03, 5  # relative decrease of an iteration, after some, at which weights are adapted
+SLOW_EARLY = 0.1  # the same at which the next shape is compared, too
 MOST_ADAPTED = 20  # times that weights are adapted at one point
 TINY = float(np.finfo(float).tiny)
 FIRST_BAND, BAND_RATIO = 4, 1.7  # size of the first band of eigenvectors that share a curvature, and ratio of the ends of others
@@ -277,7 +278,8 @@ class _Descent:
             adapted = 0  # times since the last step
             while self.problem.runs < most_runs:
                 distance, value = self.distance, self.value(self.v, self.misfits)
-                if times < last and distance < CONVERGED_EARLY:
+                if times < last and (distance < CONVERGED_EARLY or self._is_slow):
+                    self._is_slow = False
                     break
                 if times == last and (distance < CONVERGED or self._is_slow):
                     self._is_slow = False
@@ -289,7 +291,8 @@ class _Descent:
                 if not self.step():
                     break
                 adapted = 0
-                self._is_slow = len(self.steps) > SLOW_AFTER and self.value(self.v, self.misfits) > (1 - SLOW) * value
+                slow, after = (SLOW, SLOW_AFTER) if times == last else (SLOW_EARLY, 1)
+                self._is_slow = len(self.steps) > after and self.value(self.v, self.misfits) > (1 - slow) * value
                 after_step()
         self.probe()
 

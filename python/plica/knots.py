@@ -10,7 +10,7 @@ from .arguments import number_from
 from .scenario import Scenario
 
 PIECES = 8  # linear pieces between points, for the product of two piecewise linear functions
-ELASTIC = ("stiffness_mN_per_m", "crowding_mN_per_m")  # of a cortex; their time course is not that of the tension
+PASSIVE = {"cortex": ("stiffness_mN_per_m", "crowding_mN_per_m"), "contraction": ("damping_nN_s_per_um",)}  # not times the activity
 
 
 def times_of(knots_min: Iterable[float]) -> list[float]:
@@ -28,9 +28,9 @@ def divided(scenario: Scenario, law: str, knots_min: list[float]) -> list[str]:
     """
     kind, _, name = law.partition(".")
     table = scenario.to_dict()[kind][name]
-    elastic = [key for key in ELASTIC if kind == "cortex" and table.get(key, 0) != 0]
-    if elastic or "trigger" in table:
-        raise ValueError(f"knots_min: {law} has {' and '.join(elastic) or 'a trigger'}; give a law whose tension alone has a time course, as "
+    passive = [key for key in PASSIVE[kind] if table.get(key, 0) != 0]
+    if passive or "trigger" in table:
+        raise ValueError(f"knots_min: {law} has {' and '.join(passive) or 'a trigger'}; give a law whose tension alone has a time course, as "
                          f"a second [{kind}.NAME] without it")
     program = table.get("program", {"time_s": [0.0, 0.0], "activity": [1.0, 1.0]})
     times_s = np.asarray(program.get("time_s", 60 * np.asarray(program.get("time_min", []))), dtype=float)
@@ -53,7 +53,6 @@ def divided(scenario: Scenario, law: str, knots_min: list[float]) -> list[str]:
     for cut, of_cut in scenario.to_dict().get("ablation", {}).items():
         if law in of_cut.get("only", []):
             changes[f"ablation.{cut}.only"] = [one for one in of_cut["only"] if one != law] + [f"{kind}.{part}" for part in names]
-    strength = "tension_mN_per_m" if kind == "cortex" else "stiffness_nN_per_um"
-    changes[f"{law}.{strength}"] = 0
+    changes[f"{law}.program"] = {"time_s": [0, 1], "activity": [0, 0]}
     scenario.update(changes)
     return [f"{kind}.{part}" for part in names]

@@ -29,8 +29,10 @@ def test_jax_has_the_gradient_of_the_tape():
     for loss in (lambda factors: (weights * run(factors) ** 2).sum(), jax.jit(lambda factors: (weights * run(factors) ** 2).sum())):
         found, gradient = jax.value_and_grad(loss)(jax.numpy.array(FACTORS))
         assert float(found) == pytest.approx(value, rel=1e-12) and np.asarray(gradient) == pytest.approx(slope, rel=1e-6)
-    by_key = jax.grad(lambda values: plica.jax.positions(BLOCK, of=KEYS)(values)[:, 2].max())(jax.numpy.array([1.0, 1000.0]))
-    tape = plica.record(BLOCK)
+    by_key = jax.grad(lambda values: plica.jax.positions(BLOCK, of=KEYS)(values)[:, 2].max())(jax.numpy.array([1.5, 800.0]))
+    changed = plica.Scenario(BLOCK)
+    changed.update(dict(zip(KEYS, [1.5, 800])))
+    tape = plica.record(changed)
     top = np.zeros_like(tape.positions())
     top[tape.positions()[:, 2].argmax(), 2] = 1
     assert np.abs(np.asarray(by_key)) == pytest.approx(np.abs(tape.gradient(top, of=KEYS)), rel=1e-6)

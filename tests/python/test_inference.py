@@ -122,6 +122,17 @@ def test_laws_that_cannot_be_divided():
             divided(scenario, LAW, [0, 1])
 
 
+def test_a_contraction_is_divided():
+    scenario = BLOCK.copy()
+    scenario["contraction"] = {"edges": {"region": "all", "stiffness_nN_per_um": 0.1, "preload_nN": 2, "tension_mN_per_m": 0.2}}
+    parts = scenario.copy()
+    assert len(divided(parts, "contraction.edges", [0, 0.5, 1])) == 3
+    assert plica.record(parts).positions() == pytest.approx(plica.record(scenario).positions(), abs=0.01)
+    scenario["contraction.edges.damping_nN_s_per_um"] = 5
+    with pytest.raises(ValueError, match="contraction.edges has damping_nN_s_per_um; give a law"):
+        divided(scenario, "contraction.edges", [0, 1])
+
+
 def test_mirrors_are_refused():
     scenario = BLOCK.copy()
     scenario["embryo.mirror"] = ["y"]
