@@ -17,6 +17,7 @@ from .experiments import reproduce
 from .fits import Combination, Fit, Miss, fit
 from .indices import SobolIndices
 from .inference import Inference, infer
+from .label_shapes import LabelledShapes, shapes_of_labels
 from .labels import polygons_of_labels
 from .monolayers import polygons_of_monolayer, tissue_of_monolayer
 from .outlines import polygons_of_outlines
@@ -47,6 +48,7 @@ __all__ = [
     "Frames",
     "GradientCheck",
     "Inference",
+    "LabelledShapes",
     "LocalEnergy",
     "Miss",
     "MissingExtra",
@@ -82,6 +84,7 @@ __all__ = [
     "record",
     "render",
     "reproduce",
+    "shapes_of_labels",
     "studio",
     "tissue_of_labels",
     "tissue_of_monolayer",

@@ -65,9 +65,9 @@ def _fill(volume: NDArray[np.uint32], tetrahedra: Floats, labels: NDArray[Any]) 
             below = np.where(rise > 0, np.maximum(below, bound), below)
             above = np.where(rise < 0, np.minimum(above, bound), above)
             inside &= (rise != 0) | (rest <= 0)
-        first = np.ceil(below - SHARED).astype(np.int64)
-        many = np.where(inside, np.floor(above + SHARED).astype(np.int64) - first + 1, 0)
-        many = np.maximum(many, 0)
+        inside &= np.isfinite(below) & np.isfinite(above)  # flat tetrahedra have bounds without end
+        first = np.ceil(np.where(inside, below, 0) - SHARED).astype(np.int64)
+        many = np.maximum(np.floor(np.where(inside, above, -1) + SHARED).astype(np.int64) - first + 1, 0)
         line = np.repeat(np.arange(len(of)), many)
         plane = first[line] + np.arange(len(line)) - np.repeat(np.cumsum(many) - many, many)
         volume[plane, row[line], column[line]] = labels[of[line]]

@@ -94,7 +94,8 @@ def _cells_of_outlines(numbers: NDArray[Any], names: NDArray[Any], call: str) ->
     cells = regions[line]
     areas = np.bincount(cells.ravel())
     areas[0] = 0
-    border = np.unique(np.concatenate([cells[0], cells[-1], cells[:, 0], cells[:, -1]]))
+    box = cells[tuple(slice(at.min(), at.max() + 1) for at in np.nonzero(cells))]  # without a line around the image
+    border = np.unique(np.concatenate([box[0], box[-1], box[:, 0], box[:, -1]]))
     outside = border[areas[border] > OUTSIDE_CELLS * np.median(areas[1:])]
     cells[np.isin(cells, outside)] = 0
     return cells, (f"image: two values: {names[line]} was taken for lines around {bodies[line]} cells; labels are those of "

@@ -155,7 +155,7 @@ def target_of(value: Any, what: str, faces: ApicalFaces, nodes: int, compared: N
     if isinstance(value, Frame):
         value = value.polygons("apical")
     if isinstance(value, Polygons):
-        centres, areas = _centres_and_areas(value)
+        centres, areas = centres_and_areas(value)
     elif isinstance(value, Mapping):
         given = mapping_of(value, what, FITS)
         unknown = sorted(set(given) - {"centres_um", "areas_um2"})
@@ -184,7 +184,7 @@ def _seen(target: Target, what: str) -> Target:
     return target
 
 
-def _centres_and_areas(polygons: Polygons) -> tuple[Array, Array]:
+def centres_and_areas(polygons: Polygons) -> tuple[Array, Array]:
     """Return centres, means of triangles about the mean of the corners weighted by area, and areas."""
     centres, areas = [], []
     for face in polygons.faces:

@@ -24,7 +24,9 @@ __all__ = ["tissue_of_labels"]
 FLAT = 0.04          # difference of the areas of both sides, over their mean; less is no bend
 CLEAR = 1.15         # ratio of a marker on both sides that tells which is apical
 ONE_WAY = 0.3        # mean of normals; less and the layer faces all ways
-LARGE_CELL = 1.7     # times the volume of a usual cell: two cells, which have about 2, may have one label
+LARGE_CELL = 1.7     # times the volume of a usual cell: two cells, which have about 2, may have one label,
+LARGE_SPREADS = 2.5  # if it is also this many standard deviations of logarithms of volumes above it: cells of some tissues differ that much
+NORMAL = 1.4826      # standard deviation of a normal distribution over the median of its absolute values
 OPENING = 1.5        # widths of a cell from the middle of an opening as small as missing cells leave
 DIRECTIONS = {f"{sign}{axis}": (place, 1 if sign == "+" else -1) for place, axis in enumerate("zyx") for sign in "+-"}
 SIDES = "\"outside\" or \"inside\" (of the bend), or a direction: \"+z\", \"-z\", \"+y\", \"-y\", \"+x\", \"-x\""
@@ -271,7 +273,7 @@ def _tell(tissue: LabelledTissue, layer: Layer, labels: Labels, volumes: Floats,
     without = [cell for cell in range(1, labels.cells + 1) if volumes[cell] > 0 and cell not in layer.rings and cell not in cut]
     if without:
         labels.remarks.append(f"{_cells(without, labels)} do not reach the middle height with three corners, and were omitted")
-    large = [cell for cell in kept if volumes[cell] > LARGE_CELL * np.median(volumes[kept])]
+    large = [cell for cell, is_large in zip(kept, large_cells(volumes[kept])) if is_large]
     if large:
         labels.remarks.append(f"{_cells(large, labels)} have more than {LARGE_CELL:g} times the volume of a usual cell: two cells may have one label")
     lopsided = [cell for cell in kept if not layer.sides.spans[cell] and not any(RIM in layer.cells[column] for column in layer.rings[cell])]
@@ -289,6 +291,13 @@ def _tell(tissue: LabelledTissue, layer: Layer, labels: Labels, volumes: Floats,
         place = layer.middle[loop].mean(axis=0) / layer.spacing
         labels.remarks.append(f"an opening of {len(loop)} edges in the layer, at {labels.where(np.round(place).astype(np.int64))}; "
                               "label missing cells, or leave it open")
+
+
+def large_cells(volumes: Floats) -> NDArray[np.bool_]:
+    """Return which cells are so much larger than usual, also for a tissue of cells of many sizes, that two may have one label."""
+    logs = np.log(volumes / np.median(volumes))
+    bound = max(float(np.log(LARGE_CELL)), LARGE_SPREADS * NORMAL * float(np.median(np.abs(logs))))
+    return np.asarray(logs > bound)
 
 
 def _cells(cells: list[int], labels: Labels) -> str:

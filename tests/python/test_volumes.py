@@ -10,6 +10,7 @@ import numpy as np
 import plica
 import pytest
 from drawn_tissues import Cyst, Tube, disagreement, pairs_of
+from plica.volumes import large_cells
 from plica.voxel_columns import evened, without_idle
 
 pytest.importorskip("scipy")
@@ -103,6 +104,13 @@ def test_damage_is_repaired_and_reported(damage, kind, spacing, said):
     assert tissue.quality.scaled_jacobian.min() > 0.1
     if said:
         assert any(re.search(said, remark) for remark in tissue.remarks), tissue.remarks
+
+
+def test_large_cells_of_a_tissue_with_cells_of_many_sizes_are_not_suspected():
+    """Logarithms of areas of a frog's epithelium (ForSys) vary by 0.4: some cells have twice the usual size."""
+    sizes = np.random.default_rng(1).normal(size=100)
+    for spread, suspected in ((0.1, True), (0.4, False)):
+        assert large_cells(np.append(np.exp(spread * sizes), 2))[-1] == suspected
 
 
 def test_corners_of_two_cells_only_are_left_out():

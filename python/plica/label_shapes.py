@@ -1,0 +1,394 @@
+"""Shapes of cells in movies of labels, as measured outcomes."""
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .arguments import number, number_from, numbers, told, voxel_spacing
+from .errors import needed
+from .label_files import read_labels
+from .label_images import numbered
+from .label_quality import LabelledTissue
+from .label_repair import without_gaps
+from .labels import _junctions
+from .polygons import Polygons
+from .shape_targets import centres_and_areas
+from .volumes import NORMAL, tissue_of_labels
+
+if TYPE_CHECKING:
+    import pandas
+
+__all__ = ["LabelledShapes", "shapes_of_labels"]
+
+Array = NDArray[np.float64]
+FEWEST_TIMES = 4     # fewer do not tell noise and wrong labels from movement
+FEWEST_FOUND = 0.5   # of the cells, in each frame
+OUTLIER = 5.0        # standard deviations of the noise from a steady movement
+MOVEMENT = 0.06      # of a cell's size, and
+CHANGE = 0.1         # of the logarithm of its area: smaller departures from a steady movement are no errors
+OUTSIDE = -1         # in place of a cell
+
+
+class _Measured(NamedTuple):
+    """Cells in one frame, NaN where unknown: centres (cells, 3), areas and heights (cells,), corners (corners, 3); µm."""
+
+    centres: Array
+    areas: Array
+    heights: Array
+    corners: Array
+
+
+class LabelledShapes(Mapping[float, dict[str, Array]]):
+    """Shapes of the cells of a movie, by time in minutes: `shapes` of `plica.infer`. Made by `plica.shapes_of_labels`.
+
+    ``shapes[time]`` has ``centres_um`` and ``areas_um2`` of the apical faces, NaN where they are unknown or doubtful.
+
+    Attributes
+    ----------
+    times_min : ndarray of float, shape (times,)
+        Times.
+    labels : ndarray of int, shape (cells,)
+        Labels of the cells in the first frame, in the order of the scenario.
+    centres_um, areas_um2, heights_um : ndarray of float, shapes (times, cells, 3), (times, cells), (times, cells)
+        As measured; NaN where unknown, as z and heights are in images.
+    corners_um : ndarray of float, shape (times, corners, 3)
+        Apical corners, in the order of ``points`` or ``apical`` of the cells; NaN where the same cells do not meet.
+    rim : ndarray of int
+        Corners on the outline of the tissue.
+    doubtful : ndarray of bool, shape (times, cells)
+        Cells that depart from a steady movement further than the noise, as wrong labels do.
+    noise_um : float
+        Standard deviation of a coordinate of changes since the first frame: `noise_um` of `plica.infer`.
+    remarks : list of str
+        Cells that are missing or doubtful.
+    """
+
+    def __init__(self, times_min: Array, labels: NDArray[np.int64], measured: list[_Measured], rim: NDArray[np.int64], pixel_um: float) -> None:
+        self.times_min, self.labels, self.rim = times_min, labels, rim
+        self.centres_um, self.areas_um2, self.heights_um, self.corners_um = (np.stack(one) for one in zip(*measured))
+        self.doubtful, self.noise_um = _doubtful_and_noise(times_min, self.centres_um, self.areas_um2, pixel_um)
+        self.remarks = self._told()
+
+    def __getitem__(self, time_min: float) -> dict[str, Array]:
+        at = np.flatnonzero(self.times_min == time_min)
+        if len(at) == 0:
+            raise KeyError(time_min)
+        unknown = self.doubtful[at[0]]
+        return {"centres_um": np.where(unknown[:, None], np.nan, self.centres_um[at[0]]),
+                "areas_um2": np.where(unknown, np.nan, self.areas_um2[at[0]])}
+
+    def __iter__(self) -> Iterator[float]:
+        return iter(self.times_min.tolist())
+
+    def __len__(self) -> int:
+        return len(self.times_min)
+
+    def table(self) -> pandas.DataFrame:
+        """Return one row per frame and cell: time_min, label, x_um, y_um, z_um, area_um2, height_um, doubtful."""
+        times, cells = self.areas_um2.shape
+        columns = dict(zip(("x_um", "y_um", "z_um"), self.centres_um.reshape(-1, 3).T))
+        table: pandas.DataFrame = needed("pandas", "tables").DataFrame({
+            "time_min": np.repeat(self.times_min, cells), "label": np.tile(self.labels, times), **columns,
+            "area_um2": self.areas_um2.ravel(), "height_um": self.heights_um.ravel(), "doubtful": self.doubtful.ravel()})
+        return table
+
+    def _told(self) -> list[str]:
+        remarks = []
+        missing = np.isnan(self.areas_um2)
+        for what, where in (("are missing or cut in", missing), ("are doubtful in", self.doubtful)):
+            of_cell = where.sum(axis=0)
+            cells = np.flatnonzero(of_cell)
+            if len(cells):
+                named = ", ".join(str(self.labels[cell]) for cell in cells[:5])
+                remarks.append(f"{len(cells)} cells ({named}{', …' if len(cells) > 5 else ''}) {what} 1 to {of_cell.max()} of {len(self)} frames")
+        if len(self) < FEWEST_TIMES:
+            remarks.append(f"noise_um is half a pixel, and wrong labels are not looked for: that takes {FEWEST_TIMES} frames")
+        return remarks
+
+    def __repr__(self) -> str:
+        return f"LabelledShapes({len(self.labels)} cells at {len(self)} times, noise {self.noise_um:.3g} µm)"
+
+
+def shapes_of_labels(
+    frames: Mapping[float, Union[str, os.PathLike[str], ArrayLike]],
+    spacing_um: Union[None, float, tuple[float, float, float]] = None,
+    *,
+    cells: Union[Polygons, LabelledTissue],
+    links: Optional[ArrayLike] = None,
+    apical: Optional[str] = None,
+    background: int = 0,
+    gap_px: float = 1,
+) -> LabelledShapes:
+    """Return the shapes of cells in a movie of tracked labels, for `plica.infer`.
+
+    Parameters
+    ----------
+    frames : mapping of float to array_like of int, or to its file
+        By time in minutes, 0 first: label images of shape (rows, columns), or volumes of shape (planes, rows, columns); the same
+        region in all.
+    spacing_um : float, or (float, float, float)
+        Size of a pixel, or distances of planes, rows and columns, µm. May be omitted for files of volumes that have them.
+    cells : Polygons or LabelledTissue
+        Cells of the frame at 0: from `plica.polygons_of_labels` for images, from `plica.tissue_of_labels` for volumes.
+    links : array_like of float, shape (n, 3), optional
+        Rows of time, label in that frame, and label of its cell at 0. Several labels may be of one cell: after a division, its
+        daughters are taken together. By default, a cell keeps its label.
+    apical : str
+        Apical side, as for `plica.tissue_of_labels`; for volumes only.
+    background : int
+        Label of pixels outside all cells.
+    gap_px : float
+        As for `plica.polygons_of_labels` and `plica.tissue_of_labels`.
+
+    Returns
+    -------
+    LabelledShapes
+        Centres, areas, corners and noise. Corners are those of `cells` where the same cells meet again.
+
+    Raises
+    ------
+    ValueError
+        If frames differ in shape or spacing, have less than half of the cells, or `cells` have no labels or other ones.
+    FileError
+        If a file cannot be read.
+
+    Notes
+    -----
+    A cell that is missing or cut by the border of the image is unknown in that frame. With four frames or more, centres and areas are
+    compared with a steady movement through the frame before and after. Departures give the noise; frames of a cell without which its
+    movement is steady are doubtful, as where cells are merged, split or exchanged.
+
+    Examples
+    --------
+    >>> import numpy as np, plica
+    >>> rows, columns = np.mgrid[:80, :80]
+    >>> movie = [1 + (rows // 20) * 4 + (columns + 10 * (rows // 20 % 2) + shift) // 20 for shift in (0, 1)]
+    >>> cells = plica.polygons_of_labels(movie[0], um_per_pixel=0.5)
+    >>> shapes = plica.shapes_of_labels({0: movie[0], 2: movie[1]}, 0.5, cells=cells)
+    >>> (shapes[2]["centres_um"] - shapes[0]["centres_um"])[:, 0].round(1)
+    array([-0.5, -0.5, -0.5, -0.5, -0.5])
+    """
+    given = _frames(frames)
+    labels = _labels_of(cells)
+    number(background, "background", "one label")
+    gap_px = number_from(gap_px, 0, "gap_px", "a width in pixels, 0 or more")
+    by_time = _links(links, given)
+    cell_of = {label: cell for cell, label in enumerate(labels.tolist())}
+    points, faces = (cells.points, cells.faces) if isinstance(cells, Polygons) else (cells.apical, cells.cells)
+    meeting = _meeting(faces, np.arange(len(faces)), len(points))
+    column = {met: corner for corner, met in enumerate(meeting) if meeting.count(met) == 1}
+    measured: list[_Measured] = []
+    first_shape: tuple[int, ...] = ()
+    first_spacing: tuple[float, ...] = ()
+    for time, frame in given.items():
+        what = f"frames[{time:g}]"
+        array, spacing = _read(frame, spacing_um, what, isinstance(cells, Polygons))
+        if not measured:
+            first_shape, first_spacing = array.shape, spacing
+        if array.shape != first_shape or not np.allclose(spacing, first_spacing):
+            raise ValueError(f"{what}: shape {array.shape} and spacing {spacing} µm; that at 0 has {first_shape} and {first_spacing} µm: cut "
+                             "out the same region in all frames, with the same spacing")
+        array = _renamed(array, by_time.get(time), labels)
+        try:
+            if isinstance(cells, Polygons):
+                one = _of_image(array, spacing[0], background, gap_px, cell_of, column, len(points))
+            else:
+                one = _of_volume(array, spacing, apical, background, gap_px, cell_of, column, len(points))
+        except ValueError as error:
+            raise ValueError(f"{what}: {error}") from error
+        found = int(np.isfinite(one.areas).sum())
+        if found < FEWEST_FOUND * len(labels):
+            advice = "give the frame that cells are made of" if time == 0 else "track the labels, or give links"
+            raise ValueError(f"{what}: has {found} of {len(labels)} cells by their labels; {advice}")
+        measured.append(one)
+    rim = np.array([corner for corner, met in enumerate(meeting) if OUTSIDE in met], dtype=np.int64)
+    shapes = LabelledShapes(np.array(list(given)), labels, measured, rim, float(np.min(first_spacing)))
+    for remark in shapes.remarks:
+        warnings.warn(f"frames: {remark}", stacklevel=2)
+    return shapes
+
+
+def _frames(frames: Any) -> dict[float, Any]:
+    if not isinstance(frames, Mapping) or not frames:
+        raise TypeError(f"frames: {told(frames)}; give a mapping of times in minutes to labels")
+    by_time = {number_from(time, 0, "frames", "times in minutes, 0 or later"): frame for time, frame in frames.items()}
+    if 0 not in by_time:
+        raise ValueError(f"frames: begin at {min(by_time):g} min; give that of the cells at 0, because changes since then are compared")
+    return dict(sorted(by_time.items()))
+
+
+def _labels_of(cells: Any) -> NDArray[np.int64]:
+    if not isinstance(cells, (Polygons, LabelledTissue)):
+        raise TypeError(f"cells: {told(cells)}; give what polygons_of_labels or tissue_of_labels returned")
+    if "label" not in cells.cell_data:
+        raise ValueError("cells: have no array \"label\"; give what polygons_of_labels or tissue_of_labels returned")
+    labels = np.asarray(cells.cell_data["label"]).astype(np.int64)
+    if len(np.unique(labels)) < len(labels):
+        raise ValueError("cells: two have one label; give each cell its own")
+    return labels
+
+
+def _links(links: Optional[ArrayLike], frames: dict[float, Any]) -> dict[float, dict[int, int]]:
+    """Return by time the label at 0 of each label."""
+    by_time: dict[float, dict[int, int]] = {}
+    if links is None:
+        return by_time
+    fits = "rows of time in minutes, label, and label at 0"
+    rows = numbers(links, "links", fits)
+    if rows.ndim != 2 or rows.shape[1] != 3 or not np.isfinite(rows).all() or (rows[:, 1:] != np.floor(rows[:, 1:])).any():
+        raise ValueError(f"links: {told(rows)}; give {fits}")
+    for time, label, first in rows.tolist():
+        if time not in frames:
+            raise ValueError(f"links: there is no frame at {time:g} min; give times of frames")
+        if by_time.setdefault(time, {}).setdefault(int(label), int(first)) != first:
+            raise ValueError(f"links: label {label:.0f} at {time:g} min is linked to {by_time[time][int(label)]} and {first:.0f}; link it once")
+    return by_time
+
+
+def _read(frame: Any, spacing_um: Any, what: str, is_image: bool) -> tuple[NDArray[Any], tuple[float, ...]]:
+    if isinstance(frame, (str, os.PathLike)):
+        frame, of_file = read_labels(frame)
+        spacing_um = of_file if spacing_um is None else spacing_um
+    array = np.squeeze(np.asarray(frame))
+    dimensions, shape = (2, "(rows, columns)") if is_image else (3, "(planes, rows, columns)")
+    if array.ndim != dimensions:
+        raise ValueError(f"{what}: {told(array)}; give labels of shape {shape}, because cells are of such a frame")
+    if is_image:
+        return array, (number_from(spacing_um, 0, "spacing_um", "the size of a pixel in µm, above 0", above=True),)
+    return array, tuple(voxel_spacing(spacing_um).tolist())
+
+
+def _renamed(array: NDArray[Any], links: Optional[dict[int, int]], labels: NDArray[np.int64]) -> NDArray[Any]:
+    """Return a frame with labels at 0; labels without a link get new ones."""
+    if links is None:
+        return array
+    names, inverse = np.unique(array, return_inverse=True)
+    new = int(max(labels.max(), names.max())) + 1 + np.arange(len(names))
+    renamed = np.array([links.get(int(name), 0 if name == 0 else int(fresh)) for name, fresh in zip(names, new)])
+    return np.asarray(renamed[inverse].reshape(array.shape))
+
+
+def _meeting(faces: list[NDArray[np.int64]], cell: ArrayLike, corners: int) -> list[frozenset[int]]:
+    """Return for each corner the cells that meet there, OUTSIDE among them at a free edge. `cell` numbers the faces."""
+    found: list[set[int]] = [set() for _ in range(corners)]
+    edges: dict[frozenset[int], int] = {}
+    for face, number_of in zip(faces, np.asarray(cell).tolist()):
+        ring = face.tolist()
+        for one, other in zip(ring, ring[1:] + ring[:1]):
+            found[one].add(number_of)
+            edges[frozenset((one, other))] = edges.get(frozenset((one, other)), 0) + 1
+    for edge, count in edges.items():
+        for corner in edge if count == 1 else ():
+            found[corner].add(OUTSIDE)
+    return [frozenset(cells) for cells in found]
+
+
+def _placed(places: Array, meeting: list[frozenset[int]], column: dict[frozenset[int], int], corners: int) -> Array:
+    """Return the places of corners at which the same cells meet, once; NaN for others."""
+    found = np.full((corners, 3), np.nan)
+    number_of: dict[int, list[int]] = {}
+    for place, met in enumerate(meeting):
+        if met in column:
+            number_of.setdefault(column[met], []).append(place)
+    for corner, those in number_of.items():
+        if len(those) == 1:
+            found[corner] = places[those[0]]
+    return found
+
+
+def _of_image(image: NDArray[Any], pixel_um: float, background: int, gap_px: float, cell_of: dict[int, int],
+              column: dict[frozenset[int], int], corners: int) -> _Measured:
+    """Measure the pixels of cells."""
+    given = numbered(image, background)
+    closed = without_gaps(given.numbers, gap_px, [])
+    count = len(given.names) + 1
+    cell = np.array([OUTSIDE, *(cell_of.get(int(name), OUTSIDE) for name in given.names)])
+    rows, columns = np.indices(closed.shape)
+    pixels = np.bincount(closed.ravel(), minlength=count)[:count]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        x, y = (np.bincount(closed.ravel(), axis.ravel(), minlength=count)[:count] / pixels for axis in (columns, len(closed) - 1 - rows))
+    cut = np.unique(np.concatenate([closed[0], closed[-1], closed[:, 0], closed[:, -1]]))
+    seen = (cell != OUTSIDE) & (pixels > 0)
+    seen[cut] = False
+    cells = len(cell_of)
+    centres, areas = np.full((cells, 3), np.nan), np.full(cells, np.nan)
+    centres[cell[seen], 0], centres[cell[seen], 1] = pixel_um * x[seen], pixel_um * y[seen]
+    areas[cell[seen]] = pixel_um**2 * pixels[seen]
+    beyond = count  # a frame around the image
+    places, of_label = _junctions(np.pad(closed, 1, constant_values=beyond), needed("skimage.measure", "shapes of labels"))
+    meeting: list[set[int]] = [set() for _ in places]
+    for label, vertices in of_label.items():
+        for vertex in vertices:
+            meeting[vertex].add(OUTSIDE if label == beyond else int(cell[label]))
+    at = np.reshape(places, (-1, 2)) - 1
+    where = pixel_um * np.column_stack([at[:, 1], len(closed) - 1 - at[:, 0], np.full(len(at), np.nan)])
+    return _Measured(centres, areas, np.full(cells, np.nan), _placed(where, [frozenset(one) for one in meeting], column, corners))
+
+
+def _of_volume(volume: NDArray[Any], spacing: tuple[float, ...], apical: Optional[str], background: int, gap_px: float,
+               cell_of: dict[int, int], column: dict[frozenset[int], int], corners: int) -> _Measured:
+    """Measure the prisms of cells."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # LabelledShapes.remarks has those of all frames
+        tissue = tissue_of_labels(volume, (spacing[0], spacing[1], spacing[2]), apical=apical, background=background, gap_px=gap_px,
+                                  keep="largest")
+    cell = np.array([cell_of.get(int(label), OUTSIDE) for label in tissue.cell_data["label"]])
+    seen, cells = cell != OUTSIDE, len(cell_of)
+    centres, areas, heights = np.full((cells, 3), np.nan), np.full(cells, np.nan), np.full(cells, np.nan)
+    polygons = tissue.polygons("apical")
+    of_faces = centres_and_areas(polygons)
+    centres[cell[seen]], areas[cell[seen]], heights[cell[seen]] = of_faces[0][seen], of_faces[1][seen], tissue.heights[seen]
+    meeting = _meeting(polygons.faces, cell, len(polygons.points))
+    return _Measured(centres, areas, heights, _placed(polygons.points, meeting, column, corners))
+
+
+def _doubtful_and_noise(times: Array, centres: Array, areas: Array, pixel_um: float) -> tuple[NDArray[np.bool_], float]:
+    """Return which cells depart from a steady movement, shape (times, cells), and the noise of changes since the first time, µm."""
+    doubtful = np.zeros(areas.shape, dtype=bool)
+    if len(times) < FEWEST_TIMES:
+        return doubtful, 0.5 * pixel_um
+    size = float(np.sqrt(np.nanmedian(areas)))
+    axes = [axis for axis in range(3) if np.isfinite(centres[..., axis]).any()]
+    series = np.stack([*(centres[..., axis] / size for axis in axes), np.log(areas)], axis=-1)  # (times, cells, quantities)
+    spread = _spread(times, series)
+    allowed = OUTLIER * spread
+    bound = np.maximum(allowed, [MOVEMENT] * len(axes) + [CHANGE])
+    common = np.nanmedian(series - series[0], axis=1, keepdims=True)
+    for cell in range(areas.shape[1]):
+        of_cell = (series - common)[:, cell] / bound
+        known = np.flatnonzero(np.isfinite(of_cell).all(axis=1))
+        doubtful[np.setdiff1d(known, _steady(times, of_cell, known)), cell] = True
+    kept = np.where(doubtful[..., None], np.nan, series)
+    spread = _spread(times, kept)
+    # The noise of an area is sqrt(2 area) times that of a coordinate.
+    coordinates = size * float(np.sqrt((spread[:-1] ** 2).mean()))
+    from_areas = size * float(spread[-1]) / np.sqrt(2)
+    return doubtful, float(np.sqrt(2) * max(coordinates, from_areas, 1e-3 * pixel_um))
+
+
+def _departures(times: Array, series: Array) -> Array:
+    """Return how far each inner time is from the straight line through the time before and after, over the standard deviation of
+    that for independent noise of 1; shape (times - 2, ...)."""
+    share = ((times[1:-1] - times[:-2]) / (times[2:] - times[:-2])).reshape(-1, *(1,) * (series.ndim - 1))
+    return np.asarray((series[1:-1] - (1 - share) * series[:-2] - share * series[2:]) / np.sqrt(1 + share**2 + (1 - share) ** 2))
+
+
+def _spread(times: Array, series: Array) -> Array:
+    """Return the standard deviation of the noise of each quantity, by medians; series has shape (times, cells, quantities)."""
+    departures = _departures(times, series)
+    departures -= np.nanmedian(departures, axis=1, keepdims=True)
+    return np.asarray(NORMAL * np.nanmedian(np.abs(departures), axis=(0, 1)))
+
+
+def _steady(times: Array, series: Array, known: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the times that remain without as few as possible, so that no departure exceeds 1; none if these are less than half."""
+    kept = known
+    while len(kept) > 2 and np.abs(_departures(times[kept], series[kept])).max() > 1:
+        ways = [np.delete(kept, one) for one in range(len(kept))]
+        kept = min(ways, key=lambda way: float((_departures(times[way], series[way]) ** 2).sum()))
+    return kept if 2 * len(kept) >= len(known) and len(kept) > 2 else kept[:0]
