@@ -110,9 +110,11 @@ CellPattern make_ablated_pattern(const Scenario& scenario, const std::string& ta
                                  const Origin& origin) {
   std::vector<Ablation> ablations;
   for (const auto& [name, ablation] : scenario.ablations)
-    if (takes_from(ablation, table, input.faces))
+    if (takes_from(ablation, table, input.faces)) {
       ablations.emplace_back(origin.whole.regions.at(ablation.region), ablation.remaining, *ablation.at_s,
-                             ablation.until_s);
+                             ablation.until_s, ablation.recovery_s);
+      ablations.back().height_percent = ablation.height_percent;
+    }
   return make_pattern(input, origin, std::move(ablations));
 }
 

@@ -28,27 +28,6 @@ void check_faces(const Scenario& scenario, const Acting& acting, const Tissue& t
         fmt::format("set region to cells with this face, or change {}", acting.faces_key)));
 }
 
-// Checks profiles by array: the tissue has the array, with a finite value in every cell of the region.
-void check_array(const Scenario& scenario, const Acting& acting, const Tissue& tissue,
-                 std::vector<Diagnostic>& errors) {
-  const std::string& name = acting.input.profile.array;
-  if (acting.input.profile.shape != "array") return;
-  const std::string key = acting.table + ".profile.array";
-  if (!tissue.cell_arrays.contains(name)) {
-    errors.push_back(no_array(scenario, key, name, tissue));
-    return;
-  }
-  const CellSet& cells = tissue.regions.at(acting.input.region);
-  const CellArray& values = tissue.cell_arrays.at(name);
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    if (cells[c] && !std::isfinite(values[c])) {
-      errors.push_back(diagnostic_at(scenario, key,
-                                     fmt::format("array \"{}\" has no value in {}", name, cell_at(tissue, CellId(c))),
-                                     "provide a number for every cell of the region"));
-      return;
-    }
-}
-
 constexpr double least_um = 1, most_um = 100;
 
 bool is_of_a_cell(double size_um) { return size_um >= least_um && size_um <= most_um; }
@@ -162,6 +141,23 @@ class SymmetryCheck {
 
 }  // namespace
 
+void check_array(const Scenario& scenario, const std::string& key, const std::string& name, const std::string& region,
+                 const Tissue& tissue, std::vector<Diagnostic>& errors) {
+  if (!tissue.cell_arrays.contains(name)) {
+    errors.push_back(no_array(scenario, key, name, tissue));
+    return;
+  }
+  const CellSet& cells = tissue.regions.at(region);
+  const CellArray& values = tissue.cell_arrays.at(name);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    if (cells[c] && !std::isfinite(values[c])) {
+      errors.push_back(diagnostic_at(scenario, key,
+                                     fmt::format("array \"{}\" has no value in {}", name, cell_at(tissue, CellId(c))),
+                                     "provide a number for every cell of the region"));
+      return;
+    }
+}
+
 // Coarse, thick or short meshes have inverted cells where curvature is highest.
 void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors) {
   for (std::size_t e = 0; e < tissue.elements.size(); ++e)
@@ -183,7 +179,9 @@ void check_tissue(const Scenario& scenario, const Tissue& tissue) {
   std::vector<Diagnostic> errors;
   const std::vector<Acting> acting = acting_tables(scenario);
   for (const Acting& one : acting) check_faces(scenario, one, tissue, errors);
-  for (const Acting& one : acting) check_array(scenario, one, tissue, errors);
+  for (const Acting& one : acting)
+    if (const auto& input = one.input; input.profile.shape == "array")
+      check_array(scenario, one.table + ".profile.array", input.profile.array, input.region, tissue, errors);
   for (const ScenarioTable& table : scenario_tables())
     if (table.check) table.check(scenario, tissue, errors);
   if (!errors.empty()) throw ScenarioError(std::move(errors));

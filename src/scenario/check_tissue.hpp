@@ -25,6 +25,10 @@ Diagnostic diagnostic_at(const Scenario& scenario, const std::string& key, std::
 /// Makes the error that the tissue lacks an array which `key` names.
 Diagnostic no_array(const Scenario& scenario, const std::string& key, const std::string& array, const Tissue& tissue);
 
+/// Adds an error unless the tissue has the array that `key` names, with a finite value in every cell of the region.
+void check_array(const Scenario& scenario, const std::string& key, const std::string& name, const std::string& region,
+                 const Tissue& tissue, std::vector<Diagnostic>& errors);
+
 /// Adds an error for the first element that is inverted or flat in the reference state.
 void check_rest_shape(const Scenario& scenario, const Tissue& tissue, std::vector<Diagnostic>& errors);
 

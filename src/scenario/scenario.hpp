@@ -195,9 +195,10 @@ struct FollowInput : ActivationInput {
   std::optional<double> from, to;
 };
 
-/// Polarity of lateral faces: a factor by the angle between their normal and an axis.
-struct WallDirectionInput {
-  std::string axis;  // along | across; empty: none
+/// Tension along a direction: lateral faces have a factor by the angle between their normal and an axis, others fibres.
+struct DirectionInput {
+  std::string axis;   // along | across; empty: none
+  std::string array;  // of angles to it, degrees; empty: 0
   double strongest = 1, weakest = 1;
 };
 
@@ -218,7 +219,7 @@ struct CortexInput : ActingInput {
   ProgramInput stiffness_program;
   TriggerInput trigger;
   FollowInput follow;
-  WallDirectionInput direction;
+  DirectionInput direction;
   WallNoiseInput noise;
 };
 
@@ -384,6 +385,8 @@ struct AblationInput {
   std::vector<std::string> faces = {"apical", "basal", "lateral"};
   std::vector<std::string> only;        // names of tables, such as cortex.apical; empty: all
   std::optional<double> at_s, until_s;  // TOML: at_s or at_min; empty until_s: permanent
+  double recovery_s = 0;                // TOML: recovery_s or recovery_min
+  std::optional<Range> height_percent;  // of centres of lateral faces; empty: all
   double remaining = 0;                 // residual activity
 };
 

@@ -161,6 +161,17 @@ std::optional<CellId> cell_between_layers(const Tissue& tissue) {
   return std::nullopt;
 }
 
+double height_percent(const Tissue& tissue, CellId cell, std::span<const NodeId> nodes) {
+  const auto mean = [&](std::span<const NodeId> of) {
+    Vec3 sum = Vec3::Zero();
+    for (const NodeId node : of) sum += tissue.rest_positions[node.index()];
+    return Vec3(sum / static_cast<double>(of.size()));
+  };
+  const Vec3 base = mean(tissue.cells[cell.index()].basal_corners());
+  const Vec3 up = mean(tissue.cells[cell.index()].apical_corners()) - base;
+  return 100 * (mean(nodes) - base).dot(up) / up.squaredNorm();
+}
+
 std::vector<int> half_cells_from_midline(const Tissue& tissue) {
   std::vector<int> numbers;
   const bool has_back = goes_round(tissue);

@@ -43,6 +43,9 @@ std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue);
 /// Return the first cell without an apical or basal face, which shows more than one layer of cells.
 std::optional<CellId> cell_between_layers(const Tissue& tissue);
 
+/// Return the height in a cell of the mean of these nodes, reference state: 0 at the basal, 100 at the apical surface.
+double height_percent(const Tissue& tissue, CellId cell, std::span<const NodeId> nodes);
+
 /// Return twice the distance of each cell from the ventral midline, counted in cells along the shortest path through
 /// lateral faces: 0, 2, 4, ... if cells lie on the midline, 1, 3, 5, ... if it runs between two rows; -1 if
 /// unreachable. The midline is where the plane y = 0 cuts the apical surface, towards -z if the tissue has an outer

@@ -1,11 +1,12 @@
-// Keys of [exchange], and of the direction and the noise of lateral cortices.
+// Keys of [exchange], and of the direction and the noise of cortices.
 #include "support/scenarios.hpp"
 
 namespace {
 
 const std::string soft_sheet = sheet_table(36, 36, 10, 36) + "[elasticity]\nmodel = \"neo-hookean\"\n",
                   exchanging = soft_sheet + "[exchange]\nbelow_um = 0.35\n";
-const std::string lateral_cortex = "[cortex.a]\nregion = \"all\"\nfaces = \"lateral\"\n";
+const std::string lateral_cortex = "[cortex.a]\nregion = \"all\"\nfaces = \"lateral\"\n",
+                  apical_cortex = "[cortex.a]\nregion = \"all\"\ntension_mN_per_m = 1\n";
 
 TEST(ExchangeKeys, SayWhatWouldBeRight) {
   const WrongScenarios cases = {
@@ -46,10 +47,46 @@ TEST(ExchangeKeys, SayWhatWouldBeRight) {
        "5: cortex.a.direction: has no effect, since strongest equals weakest; set strongest above weakest"},
       {lateral_cortex + "stiffness_mN_per_m = 1\nnoise = { spread = 0.5, correlation_s = 5 }",
        "5: cortex.a.noise: is not used without tension_mN_per_m; remove it, or set tension_mN_per_m"},
-      {"[cortex.a]\nregion = \"all\"\ntension_mN_per_m = 1\ndirection = { axis = \"along\", weakest = 0.5 }",
-       "4: cortex.a.direction: acts on lateral faces only; remove it, or set faces to \"lateral\""},
+      {apical_cortex + "noise = { spread = 0.5, correlation_s = 60 }",
+       "4: cortex.a.noise: acts on lateral faces only; remove it, or set faces to \"lateral\""},
+      {lateral_cortex + "tension_mN_per_m = 1\ndirection = { axis = \"along\", weakest = 0, array = \"angle\" }",
+       "5: cortex.a.direction.array: acts on apical and basal faces only; remove it, or change faces"},
+      {apical_cortex + "direction = { array = \"angle\" }",
+       "4: cortex.a.direction.axis: is missing; set axis to \"along\" or \"across\""},
+      {apical_cortex + "direction = { axis = \"along\", weakest = 1.5 }",
+       "4: cortex.a.direction.weakest: 1.5 exceeds strongest; exchange both values, and turn axis"},
+      {"embryo.mirror = [\"y\"]\n" + apical_cortex + "direction = { axis = \"along\", weakest = 0, array = \"angle\" }",
+       "5: cortex.a.direction.array: mirror planes are not possible beside angles by cell; remove it, or remove "
+       "embryo.mirror"},
+      {exchanging + apical_cortex + "direction = { axis = \"along\", weakest = 0 }",
+       "14: cortex.a.direction: apical and basal faces have no direction beside [exchange]; remove direction, or "
+       "remove "
+       "[exchange]"},
+      {soft_sheet + "[growth.a]\nregion = \"all\"\nrate_per_h = 1\n" + apical_cortex +
+           "direction = { axis = \"along\", weakest = 0 }",
+       "15: cortex.a.direction: apical and basal faces have no direction beside [growth.NAME]; remove direction, or "
+       "remove [growth.NAME]"},
   };
   expect_errors(cases, load_errors);
+}
+
+TEST(DirectionKeys, GiveApicalFacesFibres) {
+  const auto energy = [](const std::string& direction) {
+    const auto model = make_model(scenario_of(block_table(60, 40, 10, "3, 2, 1") + apical_cortex + direction));
+    Step step;
+    Vectors stretched = model->tissue.rest_positions;
+    for (Vec3& x : stretched) x.x() *= 1.5;
+    step.positions = step.previous_positions = stretched;
+    for (const auto& law : model->laws)
+      if (law->label() == "cortex.a") return law->energy(step);
+    return 0.0;
+  };
+  EXPECT_NEAR(energy(""), 1.5 * 2400, 1e-9);
+  EXPECT_NEAR(energy("direction = { axis = \"across\", weakest = 0.2 }"), (0.2 * 1.5 + 0.8) * 2400, 1e-9);
+  EXPECT_NEAR(energy("direction = { axis = \"along\", strongest = 2, weakest = 0.5 }"), 2 * 1.5 * 2400, 1e-9);
+  EXPECT_SAYS(model_errors(block_table(60, 40, 10, "3, 2, 1") + apical_cortex +
+                           "direction = { axis = \"along\", weakest = 0, array = \"angle\" }"),
+              "cortex.a.direction.array: the embryo has no array \"angle\"");
 }
 
 TEST(ExchangeKeys, AreRefusedForCellsWithoutRule) {

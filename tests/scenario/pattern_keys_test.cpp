@@ -253,6 +253,30 @@ TEST(AblationKeys, FacesTimesAndRegionsAreThoseGiven) {
   EXPECT_EQ(*cortex_of(*all, "walls").activity_of(CellId(0), 1, {}), 0);
 }
 
+// Of walls of three elements, only the middle ones lose their tension; no cell as a whole does.
+TEST(AblationKeys, CutAtAHeight) {
+  const std::string three_high =
+      std::regex_replace(layered_block, std::regex("cells = "), "elements_per_cell = [1, 1, 3]\ncells = ");
+  const std::string cut = "[ablation.cut]\nregion = \"all\"\nfaces = [\"lateral\"]\nat_min = 1\nheight_percent = ";
+  const std::unique_ptr<Model> model = make_model(scenario_of(three_high + cut + "[40, 60]"));
+  const Cortex& walls = cortex_of(*model, "walls");
+  Step step;
+  step.positions = step.previous_positions = model->tissue.rest_positions;
+  step.end_time_s = 100;
+  const std::vector<double> tensions = walls.tensions(step);
+  std::map<long, int> of_height;
+  for (std::size_t f = 0; f < tensions.size(); ++f) {
+    const Face& face = walls.faces()[f];
+    const long height = std::lround(height_percent(model->tissue, face.cell, face.nodes));
+    ++of_height[height];
+    EXPECT_EQ(tensions[f], height == 50 ? 0 : 2) << height;
+  }
+  EXPECT_EQ(of_height.size(), 3U);
+  EXPECT_EQ(*walls.activity_of(CellId(0), 100, {}), 1);
+  EXPECT_SAYS(model_errors(three_high + cut + "[0, 10]"), "no lateral face of the region has its centre in this part");
+  EXPECT_SAYS(model_errors(layered_block + cut + "[40, 60]"), "every lateral face of the region has its centre");
+}
+
 TEST(AblationKeys, WhatIsWrongIsSaid) {
   const auto cut = [](const std::string& keys) { return layered_block + "[ablation.cut]\n" + keys; };
   const WrongScenarios cases = {
@@ -264,6 +288,16 @@ TEST(AblationKeys, WhatIsWrongIsSaid) {
        "conflicts with ablation.cut.at_min, which is also set; remove one of them"},
       {cut("region = \"first\"\nat_min = 5\nuntil_min = 5"),
        "test.toml:21: ablation.cut.until_min: is not after the start of the ablation; set a later time, or \"none\""},
+      {cut("region = \"first\"\nat_s = 5\nrecovery_s = 5"),
+       "test.toml:21: ablation.cut.recovery_s: is not used without until_s, the time at which recovery begins; set "
+       "until_min, or remove it"},
+      {cut("region = \"first\"\nat_s = 5\nheight_percent = [40, 60]"),
+       "test.toml:21: ablation.cut.height_percent: acts on lateral faces only; set faces to [\"lateral\"]"},
+      {cut("region = \"first\"\nat_s = 5\nfaces = [\"lateral\"]\nheight_percent = [40, 60]\n[contraction.rods]\nregion "
+           "= \"all\"\nedges = \"lateral\"\npreload_nN = 1"),
+       "test.toml:22: ablation.cut.height_percent: [contraction.rods] acts along whole lateral edges; name the "
+       "cortices "
+       "to cut in `only`"},
       {cut("region = \"first\"\nat_s = 5\nonly = [\"cortex.tip\"]"),
        "test.toml:21: ablation.cut.only: [cortex.tip] does not exist; use \"cortex.top\" (nearest match)"},
   };

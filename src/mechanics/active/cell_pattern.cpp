@@ -199,24 +199,39 @@ double CellPattern::pulse(CellId cell, double time_s) const {
   return 1 + pulse_amplitude * std::sin(2 * std::numbers::pi * (time_s / pulse_periods_s[c] + pulse_phases[c]));
 }
 
-Ablation::Ablation(CellSet who, double part, double at_s, std::optional<double> until_s)
+Ablation::Ablation(CellSet who, double part, double at_s, std::optional<double> until_s, double recovery_s)
     : cells(std::move(who)),
-      remaining(until_s ? Program({at_s, at_s, *until_s, *until_s}, {1, part, part, 1})
+      remaining(until_s ? Program({at_s, at_s, *until_s, *until_s + recovery_s}, {1, part, part, 1})
                         : Program({at_s, at_s}, {1, part})) {}
 
-double CellPattern::remaining(CellId cell, double time_s) const {
+double CellPattern::remaining(CellId cell, double time_s, std::optional<double> height_percent) const {
   double part = 1;
-  for (const Ablation& ablation : ablations)
-    if (ablation.cells[cell.index()]) part *= ablation.remaining.at(time_s);
+  for (const Ablation& ablation : ablations) {
+    const auto& range = ablation.height_percent;
+    const bool is_there =
+        !range || (height_percent && *height_percent >= (*range)[0] && *height_percent <= (*range)[1]);
+    if (is_there && ablation.cells[cell.index()]) part *= ablation.remaining.at(time_s);
+  }
   return part;
 }
 
-std::vector<double> CellPattern::with_ablations(std::vector<double> times_s) const {
-  for (const Ablation& ablation : ablations) {
-    const std::vector<double> jumps_s = ablation.remaining.jumps_s();
-    times_s.insert(times_s.end(), jumps_s.begin(), jumps_s.end());
-  }
+namespace {
+
+std::vector<double> ordered_with(std::vector<double> times_s, const std::vector<double>& more_s) {
+  times_s.insert(times_s.end(), more_s.begin(), more_s.end());
   std::ranges::sort(times_s);
+  return times_s;
+}
+
+}  // namespace
+
+std::vector<double> CellPattern::with_ablation_points(std::vector<double> times_s) const {
+  for (const Ablation& ablation : ablations) times_s = ordered_with(std::move(times_s), ablation.remaining.times_s());
+  return times_s;
+}
+
+std::vector<double> CellPattern::with_ablation_jumps(std::vector<double> times_s) const {
+  for (const Ablation& ablation : ablations) times_s = ordered_with(std::move(times_s), ablation.remaining.jumps_s());
   return times_s;
 }
 

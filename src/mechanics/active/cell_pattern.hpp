@@ -78,13 +78,15 @@ struct PatternRule {
   PulseRule pulse;
 };
 
-/// Laser ablation: loss of strength of some cells, permanently or for a time.
+/// Laser ablation: loss of strength of some cells, permanently or for a time, at whose end it recovers.
 struct Ablation {
   CellSet cells;
-  Program remaining;  // remaining fraction
+  Program remaining;                                         // remaining fraction
+  std::optional<std::array<double, 2>> height_percent = {};  // only faces with their centres between; empty: all
 
-  /// Ablation that leaves `part` of the strength after `at_s`, until `until_s` if given.
-  Ablation(CellSet who, double part, double at_s, std::optional<double> until_s);
+  /// Ablation that leaves `part` of the strength after `at_s`, until `until_s` if given; all is back `recovery_s`
+  /// later.
+  Ablation(CellSet who, double part, double at_s, std::optional<double> until_s, double recovery_s = 0);
 
   static auto parts_by_cell(auto& ablation) { return std::tie(ablation.cells); }
 };
@@ -105,10 +107,12 @@ struct CellPattern {
   /// Return the pulse factor on the activity of a cell; its mean over a period is 1.
   [[nodiscard]] double pulse(CellId cell, double time_s) const;
 
-  /// Return the fraction of the strength of a cell that ablations have left.
-  [[nodiscard]] double remaining(CellId cell, double time_s) const;
-  /// Return these times together with the ordered times at which ablations begin and end, where forces jump.
-  [[nodiscard]] std::vector<double> with_ablations(std::vector<double> times_s) const;
+  /// Return the fraction of the strength of a cell that ablations have left, or of a face at this height; empty:
+  /// without ablations at a height.
+  [[nodiscard]] double remaining(CellId cell, double time_s, std::optional<double> height_percent = {}) const;
+  /// Return these times and those of points or jumps of ablations, in order.
+  [[nodiscard]] std::vector<double> with_ablation_points(std::vector<double> times_s) const;
+  [[nodiscard]] std::vector<double> with_ablation_jumps(std::vector<double> times_s) const;
 
   /// Return the pattern after a division; daughters inherit from the mother cell.
   [[nodiscard]] CellPattern after_division(const TissueChange& change) const;

@@ -94,10 +94,10 @@ class Contraction final : public Law, public LawDerivatives {
     return {activities.begin(), activities.end()};
   }
   [[nodiscard]] std::vector<double> program_points_s() const override {
-    return pattern_.with_ablations(program_.delayed_points_s(delays_s()));
+    return pattern_.with_ablation_points(program_.delayed_points_s(delays_s()));
   }
   [[nodiscard]] std::vector<double> program_jumps_s() const override {
-    return pattern_.with_ablations(program_.delayed_jumps_s(delays_s()));
+    return pattern_.with_ablation_jumps(program_.delayed_jumps_s(delays_s()));
   }
   [[nodiscard]] const std::vector<Spring>& springs() const { return springs_; }
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }

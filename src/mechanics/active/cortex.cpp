@@ -11,9 +11,7 @@ namespace plica {
 namespace {
 
 double area_at_rest(const Tissue& tissue, const Face& face) {
-  std::array<Vec3, 4> corners;
-  for (int i = 0; i < 4; ++i) corners[i] = tissue.rest_positions[face.nodes[i].index()];
-  return facet_area(corners);
+  return facet_area(gather(tissue.rest_positions, face.nodes));
 }
 
 // Unit normal of a face in the rest shape of a cell that has it as a face of one element: reference positions mean
@@ -82,11 +80,22 @@ Cortex::Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kerne
     rest_areas_.push_back(area_at_rest(tissue, face));
     rest_normals_.push_back(rest_normal(tissue, face));
     strengths_.push_back(strength_of(face, pattern_));
+    heights_.push_back(height_percent(tissue, face.cell, face.nodes));
   }
   if (rule_.walls.noise.spread > 0) pairs_ = pair_numbers(tissue, faces_);
   chunks_ = chunks_of(tissue, elements_);
   batches_.resize(chunks_.batch_count());
   take_stretches(std::vector<double>(faces_.size(), 1));
+  if (rule_.fibres.share > 0) take_fibres(tissue);
+}
+
+void Cortex::take_fibres(const Tissue& tissue) {
+  fibres_.resize(batches_.size());
+  for (std::size_t place = 0; place < places(); ++place) {
+    const Face& face = faces_[std::min(place, faces_.size() - 1)];
+    write_fibres(rule_.fibres, face, rule_.side == CellSide::apical, gather(tissue.rest_positions, face.nodes),
+                 fibres_[place / batch_size], place % batch_size);
+  }
 }
 
 void Cortex::take_rest_areas() {
@@ -101,7 +110,7 @@ void Cortex::take_rest_areas() {
 
 std::optional<double> Cortex::activity_of(CellId cell, double time_s, std::span<const double> internal) const {
   if (!is_active() || !pattern_.cells[cell.index()]) return std::nullopt;
-  return activity(cell, time_s, internal);
+  return activity(cell, time_s, internal, {});
 }
 
 double Cortex::rest_area_before(std::size_t face, const Step& step) const {
@@ -111,8 +120,8 @@ double Cortex::rest_area_before(std::size_t face, const Step& step) const {
 }
 
 // Activity of a cell, without its strength.
-double Cortex::activity(CellId cell, double time_s, std::span<const double> internal) const {
-  const double part = pattern_.remaining(cell, time_s);
+double Cortex::activity(CellId cell, double time_s, std::span<const double> internal, Height height) const {
+  const double part = pattern_.remaining(cell, time_s, height);
   const Memory remembered = memory(internal);
   if (const auto given = remembered.given.of(cell)) return part * *given;
   const double delay_s = pattern_.delays_s[cell.index()], factor = part * pattern_.pulse(cell, time_s);
@@ -123,8 +132,8 @@ double Cortex::activity(CellId cell, double time_s, std::span<const double> inte
 }
 
 // The factor on its stiffness.
-double Cortex::stiffening(CellId cell, const Step& step) const {
-  const double part = pattern_.remaining(cell, step.end_time_s);
+double Cortex::stiffening(CellId cell, const Step& step, Height height) const {
+  const double part = pattern_.remaining(cell, step.end_time_s, height);
   if (!activation_.starts()) return part * rule_.stiffness_program.at(step.end_time_s);
   const double start_s = memory(step.internal).activation[cell.index()];
   return part * rule_.stiffness_program.at(start_s == ShapeActivation::not_yet ? 0 : step.end_time_s - start_s);
@@ -142,11 +151,11 @@ double Cortex::of_face(std::size_t f, const OfCell& of_cell) const {
 }
 
 double Cortex::stiffening_of(std::size_t f, const Step& step) const {
-  return of_face(f, [&](CellId cell) { return stiffening(cell, step); });
+  return of_face(f, [&](CellId cell) { return stiffening(cell, step, heights_[f]); });
 }
 
 double Cortex::activity_of_face(std::size_t f, const Step& step) const {
-  return of_face(f, [&](CellId cell) { return activity(cell, step.end_time_s, step.internal); });
+  return of_face(f, [&](CellId cell) { return activity(cell, step.end_time_s, step.internal, heights_[f]); });
 }
 
 // Compute the factors of faces before `active` reads them.
@@ -259,7 +268,7 @@ EnergyFlow Cortex::energy_flow(const CompletedStep& completed) const {
 
 std::vector<double> Cortex::areas(std::span<const Vec3> positions) const {
   std::vector<double> areas(places());
-  const FaceArrays at{batches_.data(), faces_.size(), components(positions), nullptr, nullptr, false};
+  const FaceArrays at{batches_.data(), fibres(), faces_.size(), components(positions), nullptr, nullptr, false};
   chunks_.for_batches(
       [&](std::size_t first, std::size_t last) { kernels().write_areas(at, first, last, areas.data()); });
   areas.resize(faces_.size());
@@ -290,8 +299,13 @@ Cortex::FaceTensions Cortex::face_tensions(const Step& step) const {
 FaceArrays Cortex::kernel_arrays(const Step& step) const {
   take_factors(step);
   if (!kept_.are_of(step)) kept_ = face_tensions(step);
-  return {batches_.data(),       faces_.size(),       components(step.positions),
-          kept_.tensions.data(), kept_.slopes.data(), step.semidefinite_tangent};
+  return {batches_.data(),
+          fibres(),
+          faces_.size(),
+          components(step.positions),
+          kept_.tensions.data(),
+          kept_.slopes.data(),
+          step.semidefinite_tangent};
 }
 
 std::vector<double> Cortex::tensions(const Step& step) const {
@@ -369,14 +383,14 @@ std::unique_ptr<Law> Cortex::with_strengths(std::span<const double> factors) con
 }
 
 std::vector<double> Cortex::program_points_s() const {
-  if (activation_.starts()) return pattern_.with_ablations({});  // start times of cells are unknown in advance
-  return pattern_.with_ablations(
+  if (activation_.starts()) return pattern_.with_ablation_points({});  // start times of cells are unknown in advance
+  return pattern_.with_ablation_points(
       joined(rule_.stiffness_program.times_s(), rule_.program.delayed_points_s(pattern_.delays_s)));
 }
 
 std::vector<double> Cortex::program_jumps_s() const {
-  if (activation_.starts()) return pattern_.with_ablations({});
-  return pattern_.with_ablations(
+  if (activation_.starts()) return pattern_.with_ablation_jumps({});
+  return pattern_.with_ablation_jumps(
       joined(rule_.stiffness_program.jumps_s(), rule_.program.delayed_jumps_s(pattern_.delays_s)));
 }
 

@@ -1,14 +1,16 @@
 // The cortex: a thin, active, elastic layer on apical, basal or lateral faces of cells (docs/theory/cortex.md).
 //
-// The tension T of a face, nN/um, is isotropic and depends on its area A only:
+// The tension T of a face, nN/um, is isotropic and depends on its area A only, unless it has fibres:
 //   T = a(t) gamma A/(A + A_s) + b(t) k (A/A_0 - 1) - c (A_r/A)^2,
 // with programs a and b, reference area A_r, A_s = saturation A_r, and stress-free area A_0, which is A_r or relaxes
-// towards the area: dA_0/dt = (A - A_0)/tau. Where A < A_0, k is `compression_ratio` times smaller.
+// towards the area: dA_0/dt = (A - A_0)/tau. Where A < A_0, k is `compression_ratio` times smaller. With fibres, all
+// this holds for another measure A of the face, which their stretch increases more than the stretch across them.
 #pragma once
 
 #include <vector>
 
 #include "mechanics/active/cell_pattern.hpp"
+#include "mechanics/active/fibres.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/active/shape_activation.hpp"
 #include "mechanics/active/wall_factors.hpp"
@@ -31,6 +33,9 @@ struct CortexRule {
   Program stiffness_program = {};       // time course of k
   ShapeActivationRule activation = {};  // shape-dependent start of both programs, or factor on the tension
   WallFactorRule walls = {};            // of lateral faces: factors on gamma
+  FibreRule fibres = {};                // of apical and basal faces
+
+  static auto parts_by_cell(auto& rule) { return std::tie(rule.fibres); }
 };
 
 /// Cortex law. Cell strengths scale all terms. A lateral face is shared by two cells and takes the mean of their
@@ -107,7 +112,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] CellSide side() const { return rule_.side; }
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
-  /// Areas (um^2) and tensions (nN/um) of the faces at the end of a step.
+  /// Areas (um^2; with fibres, measures) and tensions (nN/um; along them) of the faces at the end of a step.
   [[nodiscard]] std::vector<double> areas(std::span<const Vec3> positions) const;
   [[nodiscard]] std::vector<double> tensions(const Step& step) const;
   [[nodiscard]] std::optional<double> mean_tension(const Step& step) const override;  // over the area
@@ -157,6 +162,9 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] bool flows() const { return rule_.relaxation_s > 0; }
   [[nodiscard]] bool follows() const { return rule_.activation.kind == ShapeActivationRule::Kind::follows; }
   [[nodiscard]] double rest_area_before(std::size_t face, const Step& step) const;
+  [[nodiscard]] CortexRule rule_after(const TissueChange& change) const;
+  [[nodiscard]] const FibreBatch* fibres() const { return fibres_.empty() ? nullptr : fibres_.data(); }
+  void take_fibres(const Tissue& tissue);
   static std::vector<Face> acting_faces(const Tissue& tissue, CellSide side, const CellPattern& pattern);
   class Origins;  // faces before a division that faces after it come from
   void take_rest_areas();
@@ -172,11 +180,12 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   };
   [[nodiscard]] Memory memory(std::span<const double> internal) const;
   [[nodiscard]] std::vector<double> acting_midway(std::span<const double> internal) const;
-  [[nodiscard]] double activity(CellId cell, double time_s, std::span<const double> internal) const;
-  [[nodiscard]] double stiffening(CellId cell, const Step& step) const;
+  using Height = std::optional<double>;  // of a face, percent; empty: of the cell
+  [[nodiscard]] double activity(CellId cell, double time_s, std::span<const double> internal, Height height) const;
+  [[nodiscard]] double stiffening(CellId cell, const Step& step, Height height) const;
   // Derivatives of both by the state of the cell in ShapeActivation.
-  [[nodiscard]] double activity_slope(CellId cell, const Step& step) const;
-  [[nodiscard]] double stiffening_slope(CellId cell, const Step& step) const;
+  [[nodiscard]] double activity_slope(CellId cell, const Step& step, Height height) const;
+  [[nodiscard]] double stiffening_slope(CellId cell, const Step& step, Height height) const;
   // Call body(cell, weight of its parameters in the face, strength included) for the cells of a face.
   template <class Body>
   void for_cells(const Face& face, const Body& body) const;
@@ -193,8 +202,10 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   bool is_remeshed_ = false;       // cells have exchanged neighbours, or left
   Vectors rest_normals_;           // faces; in the rest shapes of then
   std::vector<double> strengths_;  // faces
+  std::vector<double> heights_;    // faces; percent of the height of their cells
   ShapeActivation activation_;
   std::vector<FaceBatch> batches_;
+  std::vector<FibreBatch> fibres_;    // empty: none
   std::vector<std::uint64_t> pairs_;  // faces; of their cells, if walls have noise
   mutable NoiseOfPairs noise_;
   mutable FaceTensions kept_;  // of the last iterate, for all products of its linear system; one thread at a time

@@ -169,9 +169,15 @@ std::unique_ptr<Law> Cortex::grown(const Tissue& tissue, std::span<const Element
   return law;
 }
 
+CortexRule Cortex::rule_after(const TissueChange& change) const {
+  CortexRule rule = rule_;
+  follow(change, rule);
+  return rule;
+}
+
 std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const TissueChange& change,
                                             std::span<const Vec3> positions) const {
-  auto after = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_, kernels_);
+  auto after = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_after(change), kernels_);
   after->noise_ = noise_;
   after->inherit_faces(Origins(*this, change), *this, positions);
   return after;
@@ -179,7 +185,7 @@ std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const TissueCh
 
 std::unique_ptr<Law> Cortex::restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
                                       std::span<const double> past) const {
-  auto law = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_, kernels_);
+  auto law = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_after(change), kernels_);
   const std::size_t faces = law->faces_.size();
   law->is_remeshed_ = past.size() == faces + 1;
   if (past.size() != faces && !law->is_remeshed_) throw InvalidNumbers();

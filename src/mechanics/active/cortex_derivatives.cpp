@@ -30,19 +30,20 @@ std::span<Number> Cortex::activation_of(std::span<Number> internal) const {
   return internal.subspan(flows() ? 2 * faces_.size() : 0, activation_.is_used() ? pattern_.cells.size() : 0);
 }
 
-double Cortex::activity_slope(CellId cell, const Step& step) const {
+double Cortex::activity_slope(CellId cell, const Step& step, Height height) const {
   const Memory remembered = memory(step.internal);
   if (remembered.given.of(cell)) return 0;
   const double state = remembered.activation[cell.index()], time_s = step.end_time_s;
-  const double factor = pattern_.remaining(cell, time_s) * pattern_.pulse(cell, time_s);
+  const double factor = pattern_.remaining(cell, time_s, height) * pattern_.pulse(cell, time_s);
   if (!activation_.starts()) return factor * rule_.program.delayed_at(pattern_.delays_s[cell.index()], time_s);
   return state == ShapeActivation::not_yet ? 0 : -factor * rule_.program.slope_at(time_s - state);
 }
 
-double Cortex::stiffening_slope(CellId cell, const Step& step) const {
+double Cortex::stiffening_slope(CellId cell, const Step& step, Height height) const {
   const double start_s = memory(step.internal).activation[cell.index()];
   if (!activation_.starts() || start_s == ShapeActivation::not_yet) return 0;
-  return -pattern_.remaining(cell, step.end_time_s) * rule_.stiffness_program.slope_at(step.end_time_s - start_s);
+  return -pattern_.remaining(cell, step.end_time_s, height) *
+         rule_.stiffness_program.slope_at(step.end_time_s - start_s);
 }
 
 template <class Body>
@@ -109,8 +110,8 @@ void Cortex::add_activation_gradient(const Along& along, std::span<double> of_st
     const double active = unit_tension(f, areas[f]);
     const double elastic = rule_.stiffness == 0 ? 0 : this->elastic(f, areas[f], step, 1, false).tension;
     for_cells(faces_[f], [&](CellId cell, double weight) {
-      double by_state = active == 0 ? 0 : active * activity_slope(cell, step);
-      if (elastic != 0) by_state += elastic * stiffening_slope(cell, step);
+      double by_state = active == 0 ? 0 : active * activity_slope(cell, step, heights_[f]);
+      if (elastic != 0) by_state += elastic * stiffening_slope(cell, step, heights_[f]);
       of_states[cell.index()] -= weight * by_state * increases[f];
     });
   }
@@ -163,7 +164,7 @@ void Cortex::add_internal_gradient(const Step& step, std::span<const double> nex
     gradient.internal[f] += (1 + step.ahead) / (1 + r) * adjoint[f] + adjoint[faces_.size() + f];
     gradient.internal[faces_.size() + f] -= step.ahead / (1 + r) * adjoint[f];
   }
-  const FaceArrays at{batches_.data(), faces_.size(),    components(step.positions),
+  const FaceArrays at{batches_.data(), fibres(),         faces_.size(), components(step.positions),
                       tensions.data(), no_slopes.data(), false};
   chunks_.for_batches(
       [&](std::size_t first, std::size_t last) { kernels().add_forces(at, first, last, components(positions)); });
@@ -177,8 +178,8 @@ void Cortex::add_strength_gradient(const Step& step, std::span<const Vec3> adjoi
     const double elastic = rule_.stiffness == 0 ? 0 : this->elastic(f, A, step, 1, false).tension;
     for_cells(faces_[f], [&](CellId cell, double weight) {
       double tension = -rule_.crowding * ratio * ratio;
-      if (active != 0) tension += active * activity(cell, step.end_time_s, step.internal);
-      if (elastic != 0) tension += elastic * stiffening(cell, step);
+      if (active != 0) tension += active * activity(cell, step.end_time_s, step.internal, heights_[f]);
+      if (elastic != 0) tension += elastic * stiffening(cell, step, heights_[f]);
       of_cells[cell.index()] -= weight * tension * increases[f];
     });
   }

@@ -65,12 +65,21 @@ struct alignas(64) FaceBatch {
   double blunt[8];  // um^2: area of a Gauss point below which it is regularised (docs/theory/cortex.md)
 };
 
+/// Fibres of faces at Gauss points (s, t) = 00, 01, 10, 11: directions f = s x_s + t x_t, of length 1 in the reference
+/// state, and weights in the measure of the face, sum of `of_area` |n| + `of_length` |f|.
+struct alignas(64) FibreBatch {
+  static constexpr double blunt = 0.05;  // |f| below which it is regularised
+  double s[4][8], t[4][8], of_area[4][8];
+  double of_length[4][8];  // um^2
+};
+
 /// Faces under tension and their positions. Tensions and slopes: faces, padded to whole batches.
 struct FaceArrays {
   const FaceBatch* batches;
+  const FibreBatch* fibres;  // null: none, and measures are areas
   std::size_t faces;
   const double* positions;  // um
-  const double* tensions;   // T = dW/dA, nN/um
+  const double* tensions;   // T = dW/dA, nN/um; A: area or measure
   const double* slopes;     // dT/dA, nN/um^3
   /// Whether to omit terms that could make the tangent indefinite: faces under compression, and changes of shape within
   /// a face.
@@ -79,7 +88,8 @@ struct FaceArrays {
 
 /// Forces: -T dA/dx; tangent: T d2A/dx2 + dT/dA dA/dx dA/dx^T.
 struct FaceKernels : ElementKernels<FaceArrays, 4> {
-  /// Write areas, um^2, padded to whole batches: bilinear facets, 2 x 2 Gauss points, regularised near zero.
+  /// Write areas or measures, um^2, padded to whole batches: bilinear facets, 2 x 2 Gauss points, regularised near
+  /// zero.
   void (*write_areas)(const FaceArrays&, std::size_t first, std::size_t last, double* areas);
 };
 

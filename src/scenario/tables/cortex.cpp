@@ -80,24 +80,42 @@ void check_shape_activation(const std::string& table, const CortexInput& cortex,
     report(".follow", "is not used without tension_mN_per_m", "remove it, or set tension_mN_per_m");
 }
 
+void check_direction(const std::string& table, const CortexInput& cortex, const Scenario& scenario, Input& input) {
+  const auto& [axis, array, strongest, weakest] = cortex.direction;
+  const auto report = [&](const std::string& key, const std::string& problem, const std::string& remedy) {
+    if (input.sound(table, table + ".direction" + key, table + ".faces"))
+      input.report(table + ".direction" + key, problem, remedy);
+  };
+  if (axis.empty() && (strongest != 1 || weakest != 1 || !array.empty()))
+    report(".axis", "is missing", "set axis to \"along\" or \"across\"");
+  if (axis.empty()) return;
+  if (strongest == weakest) report("", "has no effect, since strongest equals weakest", "set strongest above weakest");
+  if (cortex.faces == "lateral") {
+    if (!array.empty()) report(".array", "acts on apical and basal faces only", "remove it, or change faces");
+    return;
+  }
+  if (weakest > strongest)
+    report(".weakest", fmt::format("{} exceeds strongest", weakest), "exchange both values, and turn axis");
+  if (!array.empty() && !scenario.embryo.mirror.empty())
+    report(".array", "mirror planes are not possible beside angles by cell", "remove it, or remove embryo.mirror");
+  for (const auto& [other, is_used] :
+       {std::pair("[exchange]", scenario.exchange.below_um.has_value()), {"[growth.NAME]", !scenario.growths.empty()}})
+    if (is_used)
+      report("", fmt::format("apical and basal faces have no direction beside {}", other),
+             fmt::format("remove direction, or remove {}", other));
+}
+
 // Checks factors on the tension of lateral faces.
 void check_walls(const std::string& table, const CortexInput& cortex, const TimeInput& time, Input& input) {
-  const auto& [axis, strongest, weakest] = cortex.direction;
   const auto& [spread, correlation_s, seed] = cortex.noise;
   const auto report = [&](const std::string& key, const std::string& problem, const std::string& remedy) {
     if (input.sound(table, table + key)) input.report(table + key, problem, remedy);
   };
-  for (const auto& [part, is_used] : {std::pair(".direction", !axis.empty()), {".noise", spread > 0}}) {
-    if (!is_used || !input.sound(table + ".faces")) continue;
-    if (cortex.faces != "lateral")
-      report(part, "acts on lateral faces only", "remove it, or set faces to \"lateral\"");
-    else if (cortex.tension_mN_per_m == 0)
+  if (spread > 0 && input.sound(table + ".faces") && cortex.faces != "lateral")
+    report(".noise", "acts on lateral faces only", "remove it, or set faces to \"lateral\"");
+  for (const auto& [part, is_used] : {std::pair(".direction", !cortex.direction.axis.empty()), {".noise", spread > 0}})
+    if (is_used && input.sound(table + ".faces") && cortex.faces == "lateral" && cortex.tension_mN_per_m == 0)
       report(part, "is not used without tension_mN_per_m", "remove it, or set tension_mN_per_m");
-  }
-  if (axis.empty() && (strongest != 1 || weakest != 1))
-    report(".direction.axis", "is missing", "set axis to \"along\" or \"across\"");
-  if (!axis.empty() && strongest == weakest)
-    report(".direction", "has no effect, since strongest equals weakest", "set strongest above weakest");
   if (spread > 0 && !correlation_s)
     report(".noise.correlation_s", "is missing", "set it to the time in which tensions change, such as 120");
   if (spread == 0 && correlation_s)
@@ -108,19 +126,30 @@ void check_walls(const std::string& table, const CortexInput& cortex, const Time
 }
 
 void check_cortex(const std::string& table, CortexInput& cortex, const Scenario& scenario, Input& input) {
+  check_direction(table, cortex, scenario, input);
   check_walls(table, cortex, scenario.time, input);
   check_program(table, cortex.stiffness_program, input, "stiffness_program");
   check_effect(table, cortex, input);
   check_shape_activation(table, cortex, scenario, input);
 }
 
+bool is_across(const std::string& axis) { return meaning_of(words::delay_axes, axis) == PatternAxis::across; }
+
 WallFactorRule make_wall_factors(const CortexInput& input) {
   WallFactorRule rule;
-  if (const auto& [axis, strongest, weakest] = input.direction; !axis.empty())
-    rule.direction = WallDirection{meaning_of(words::delay_axes, axis) == PatternAxis::across, strongest, weakest};
+  if (const auto& [axis, array, strongest, weakest] = input.direction; input.faces == "lateral" && !axis.empty())
+    rule.direction = WallDirection{is_across(axis), strongest, weakest};
   rule.noise = {input.noise.spread, input.noise.correlation_s.value_or(0),
                 static_cast<std::uint64_t>(input.noise.seed)};
   return rule;
+}
+
+// Gives apical and basal faces fibres, and their tension its value along them.
+void take_fibres(const DirectionInput& input, const Tissue& tissue, CortexRule& rule) {
+  if (rule.side == CellSide::lateral || input.axis.empty()) return;
+  rule.fibres = {1 - input.weakest / input.strongest, is_across(input.axis) ? 90.0 : 0.0, {}};
+  if (!input.array.empty()) rule.fibres.angles_deg = tissue.cell_arrays.at(input.array);
+  for (double* value : {&rule.tension, &rule.stiffness, &rule.crowding}) *value *= input.strongest;
 }
 
 ShapeActivationRule make_shape_activation(const CortexInput& input, const Scenario& scenario) {
@@ -160,11 +189,19 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
     rule.stiffness_program = make_program(input.stiffness_program);
     rule.activation = make_shape_activation(input, scenario);
     rule.walls = make_wall_factors(input);
+    take_fibres(input.direction, origin.whole, rule);
     const std::string table = "cortex." + name;
     CellPattern pattern = make_ablated_pattern(scenario, table, input, origin);
     model.laws.push_back(std::make_unique<Cortex>(model.tissue, std::move(pattern), std::move(rule)));
     model.laws.back()->set_label(table);
   }
+}
+
+void check_arrays(const Scenario& scenario, const Tissue& tissue, Errors& errors) {
+  for (const auto& [name, input] : scenario.cortices)
+    if (!input.direction.array.empty())
+      check_array(scenario, fmt::format("cortex.{}.direction.array", name), input.direction.array, input.region, tissue,
+                  errors);
 }
 
 void describe(const X& input, const Scenario& scenario, Acting& acting) {
@@ -182,8 +219,7 @@ void describe(const X& input, const Scenario& scenario, Acting& acting) {
 }  // namespace
 
 ScenarioTable cortex_table() {
-  ScenarioTable info{"cortex.*", "Actomyosin cortex: thin active, elastic layer on cell faces, with isotropic tension.",
-                     "Activity"};
+  ScenarioTable info{"cortex.*", "Actomyosin cortex: thin active, elastic layer on cell faces.", "Activity"};
   const auto row = key_rows(info, &Scenario::cortices);
   info.rows = {
       row("region", &X::region, anything, "Cells with this cortex.", {.required = true}),
@@ -206,39 +242,43 @@ ScenarioTable cortex_table() {
   add_program(info.rows, row, &X::program);
   add_program(info.rows, row, &X::stiffness_program,
               {"stiffness_program.time_s", "stiffness_program.time_min", "stiffness_program.activity"});
-  info.rows.insert(info.rows.end(),
-                   {
-                       row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::shape_measures),
-                           "Measure that starts the time courses."),
-                       row("trigger.signal", &X::trigger, &TriggerInput::signal, anything,
-                           "Instead of `measure`: name of a `[signal.NAME]`."),
-                       row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
-                       row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
-                       row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::shape_measures),
-                           "Measure that scales the active tension."),
-                       row("follow.signal", &X::follow, &FollowInput::signal, anything,
-                           "Instead of `measure`: name of a `[signal.NAME]`."),
-                       row("follow.from", &X::follow, &FollowInput::from, not_negative,
-                           "Value at which, and before which, the factor is 0."),
-                       row("follow.to", &X::follow, &FollowInput::to, not_negative,
-                           "Value at which, and beyond which, the factor is 1."),
-                       row("direction.axis", &X::direction, &WallDirectionInput::axis, one_of(words::delay_axes),
-                           "Planar polarity of lateral faces: axis of the angle a between it and a face's normal."),
-                       row("direction.strongest", &X::direction, &WallDirectionInput::strongest, not_negative,
-                           "Factor on the tension at a = 0: faces across the axis."),
-                       row("direction.weakest", &X::direction, &WallDirectionInput::weakest, not_negative,
-                           "Factor at a right angle; between them, by cos² a."),
-                       row("noise.spread", &X::noise, &WallNoiseInput::spread, between(0, 3),
-                           "Fluctuating tension of lateral faces: relative standard deviation of log-normal factors of "
-                           "mean 1, independent for each pair of cells."),
-                       row("noise.correlation_s", &X::noise, &WallNoiseInput::correlation_s, positive,
-                           "Time in which the correlation falls to 1/e (s); steps are at most a quarter of it."),
-                       row("noise.correlation_min", &X::noise, &WallNoiseInput::correlation_s, positive,
-                           "`noise.correlation_s` in minutes.", {.instead_of = "noise.correlation_s", .scale = 60}),
-                       row("noise.seed", &X::noise, &WallNoiseInput::seed, not_negative, "Seed of these factors."),
-                   });
+  info.rows.insert(
+      info.rows.end(),
+      {
+          row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::shape_measures),
+              "Measure that starts the time courses."),
+          row("trigger.signal", &X::trigger, &TriggerInput::signal, anything,
+              "Instead of `measure`: name of a `[signal.NAME]`."),
+          row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
+          row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
+          row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::shape_measures),
+              "Measure that scales the active tension."),
+          row("follow.signal", &X::follow, &FollowInput::signal, anything,
+              "Instead of `measure`: name of a `[signal.NAME]`."),
+          row("follow.from", &X::follow, &FollowInput::from, not_negative,
+              "Value at which, and before which, the factor is 0."),
+          row("follow.to", &X::follow, &FollowInput::to, not_negative,
+              "Value at which, and beyond which, the factor is 1."),
+          row("direction.axis", &X::direction, &DirectionInput::axis, one_of(words::delay_axes),
+              "Axis of fibres (apical, basal), or of planar polarity by the angle a to the normal (lateral)."),
+          row("direction.array", &X::direction, &DirectionInput::array, anything,
+              "Apical, basal: array of angles by cell (degrees), counter-clockwise from the apical side."),
+          row("direction.strongest", &X::direction, &DirectionInput::strongest, not_negative,
+              "Factor along fibres, on all terms; lateral: on the tension at a = 0."),
+          row("direction.weakest", &X::direction, &DirectionInput::weakest, not_negative,
+              "Factor across; lateral: at a right angle; between them, by cos² a."),
+          row("noise.spread", &X::noise, &WallNoiseInput::spread, between(0, 3),
+              "Fluctuating tension of lateral faces: relative standard deviation of log-normal factors of "
+              "mean 1, independent for each pair of cells."),
+          row("noise.correlation_s", &X::noise, &WallNoiseInput::correlation_s, positive,
+              "Time in which the correlation falls to 1/e (s); steps are at most a quarter of it."),
+          row("noise.correlation_min", &X::noise, &WallNoiseInput::correlation_s, positive,
+              "`noise.correlation_s` in minutes.", {.instead_of = "noise.correlation_s", .scale = 60}),
+          row("noise.seed", &X::noise, &WallNoiseInput::seed, not_negative, "Seed of these factors."),
+      });
   add_pattern(info.rows, acting(row));
   info.build = build;
+  info.check = check_arrays;
   list_acting(info, &Scenario::cortices, describe, check_cortex);
   return info;
 }

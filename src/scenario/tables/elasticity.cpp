@@ -57,27 +57,13 @@ void check_region_elasticity(const std::string& table, R& it, const Scenario& sc
                  "set poisson_ratio to a number >= 0, or model to \"corotational\"");
 }
 
-Vec3 mean(std::span<const NodeId> nodes, const Vectors& positions) {
-  Vec3 sum = Vec3::Zero();
-  for (const NodeId node : nodes) sum += positions[node.index()];
-  return sum / static_cast<double>(nodes.size());
-}
-
-// Height of the element's centre in its cell, reference state: 0 at the basal, 100 at the apical surface.
-double height_percent(const Tissue& tissue, std::size_t element) {
-  const Cell& cell = tissue.cells[tissue.element_cell[element].index()];
-  const Vec3 base = mean(cell.basal_corners(), tissue.rest_positions);
-  const Vec3 up = mean(cell.apical_corners(), tissue.rest_positions) - base;
-  return 100 * (mean(tissue.elements[element], tissue.rest_positions) - base).dot(up) / up.squaredNorm();
-}
-
 // Elements of a table among those of `cells`; one entry per element.
 std::vector<bool> elements_of(const RegionElasticityInput& input, const CellSet& cells, const Tissue& tissue) {
   std::vector<bool> result;
   for (std::size_t e = 0; e < tissue.elements.size(); ++e) {
     bool is_in = cells[tissue.element_cell[e].index()];
     if (is_in && input.height_percent) {
-      const double height = height_percent(tissue, e);
+      const double height = height_percent(tissue, tissue.element_cell[e], tissue.elements[e]);
       is_in = height >= (*input.height_percent)[0] && height <= (*input.height_percent)[1];
     }
     result.push_back(is_in);

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "mechanics/signals/signals.hpp"
 #include "scenario/suggest.hpp"
@@ -81,23 +80,10 @@ void check_signals(Scenario& scenario, Input& input) {
   for (const auto& [name, signal] : scenario.signals) check_signal("signal." + name, signal, names, input);
 }
 
-void check_array(const Scenario& scenario, const Tissue& tissue, Errors& errors) {
-  for (const auto& [name, signal] : scenario.signals) {
-    const std::string key = fmt::format("signal.{}.initial_array", name);
-    if (signal.initial_array.empty()) continue;
-    const auto array = tissue.cell_arrays.find(signal.initial_array);
-    if (array == tissue.cell_arrays.end()) {
-      errors.push_back(no_array(scenario, key, signal.initial_array, tissue));
-    } else {
-      const auto bad = std::ranges::find_if(array->second, [](double value) { return !std::isfinite(value); });
-      if (bad != array->second.end())
-        errors.push_back(
-            diagnostic_at(scenario, key,
-                          fmt::format("array \"{}\" has no value in {}", signal.initial_array,
-                                      cell_at(tissue, CellId(static_cast<std::size_t>(bad - array->second.begin())))),
-                          "provide a number for every cell"));
-    }
-  }
+void check_arrays(const Scenario& scenario, const Tissue& tissue, Errors& errors) {
+  for (const auto& [name, signal] : scenario.signals)
+    if (!signal.initial_array.empty())
+      check_array(scenario, fmt::format("signal.{}.initial_array", name), signal.initial_array, "all", tissue, errors);
 }
 
 // Values of the whole tissue on its solved side; an error at `key` unless they are symmetric.
@@ -179,7 +165,7 @@ ScenarioTable signal_table() {
   };
   info.regions = list_regions;
   info.rules = check_signals;
-  info.check = check_array;
+  info.check = check_arrays;
   info.build = build;
   return info;
 }

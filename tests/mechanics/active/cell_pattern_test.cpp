@@ -325,7 +325,12 @@ TEST(PatternRule, AblationsTakeStrengthForAWhileOrForGood) {
                                      {85.0, {0.2, 0, 0}},
                                      {100.0, {1, 0, 0}}})
     for (int c = 0; c < 3; ++c) EXPECT_EQ(pattern.remaining(CellId(c), time_s), left[c]) << time_s << " " << c;
-  EXPECT_EQ(pattern.with_ablations({70, 5}), (std::vector<double>{5, 60, 70, 80, 90}));
+  EXPECT_EQ(pattern.with_ablation_jumps({70, 5}), (std::vector<double>{5, 60, 70, 80, 90}));
+  pattern.ablations.front() = {CellSet{true, true, false}, 0.2, 60, 90, 40};  // recovers
+  for (const auto& [time_s, left] : {std::pair(90.0, 0.2), {100.0, 0.4}, {130.0, 1.0}, {200.0, 1.0}})
+    EXPECT_DOUBLE_EQ(pattern.remaining(CellId(0), time_s), left) << time_s;
+  EXPECT_EQ(pattern.with_ablation_jumps({}), (std::vector<double>{60, 80}));
+  EXPECT_EQ(pattern.with_ablation_points({}), (std::vector<double>{60, 60, 80, 80, 90, 130}));
   TissueChange division;
   division.origin = {CellId(2), CellId(0), CellId(2)};
   const CellPattern after = pattern.after_division(division);
