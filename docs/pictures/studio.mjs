@@ -91,7 +91,6 @@ await page.waitForSelector('[data-table="region.stripe"]', { state: "attached" }
 await filmed(700);
 await page.selectOption("#add-kind", "cortex.*");
 await page.fill("#add-name", "apical");
-await page.fill("#add-region", "stripe");
 await click("#add", 0);
 const tension = '[data-key="cortex.apical.tension_mN_per_m"]';
 await page.waitForSelector(tension);

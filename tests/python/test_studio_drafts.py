@@ -3,7 +3,8 @@ import pytest
 
 import plica
 from plica import ScenarioError
-from plica.studio.draft import Draft, toml, typed
+from plica.studio.draft import Draft, defaults_of, toml, typed
+from plica.studio.session import Session
 
 
 def test_a_draft_is_written_as_differences_and_reads_back():
@@ -73,3 +74,30 @@ def test_every_built_in_scenario_is_written_and_read_back():
         table = Draft.of(name).table
         read = plica.Scenario(toml(table)).to_dict()
         assert read == table, name
+
+
+def test_a_new_table_is_written_without_its_defaults_which_are_told_apart():
+    for base in ("sheet", "furrow-slice"):
+        draft = Draft.of(base)
+        draft.set({"region.spot": {"ids": [3, 4]}, "cortex.new": {"region": "spot", "tension_mN_per_m": 3}})
+        draft.set({"cortex.new.pulse.period_s": 60})
+        assert '[cortex.new]\nregion = "spot"\ntension_mN_per_m = 3\npulse = {period_s = 60, phase = "random"}\n' in draft.text()
+        known = defaults_of(draft.table)
+        assert "cortex.new.noise.seed" in known
+        assert not {"cortex.new.pulse.period_s", "cortex.new.tension_mN_per_m"} & set(known)
+
+
+def test_a_run_is_named_by_what_is_different_from_an_earlier_one(tmp_path):
+    session = Session(tmp_path, lambda: None, threads=1)
+    session.open(Draft.of("furrow-slice"))
+
+    def started():
+        return session.runs[session.order("start", {"until_s": 0})["run"]].title
+
+    assert started() == session.draft.table["title"]
+    assert started() == "run 1 again"
+    session.order("set", {"changes": {"cortex.apical.tension_mN_per_m": "1.5"}})
+    assert started() == "run 2 with cortex.apical.tension_mN_per_m = 1.5"
+    session.order("set", {"changes": {"region.spot": {"ids": [3, 4]}}})
+    assert started() == "run 3 with other region.spot.ids"
+    session.close()

@@ -107,9 +107,19 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.waitForFunction(() => document.querySelector("#title").textContent === "A short slice");
 
   await paintBelow(page);
+  // A name that is missing or refused is asked for, and not lost.
+  const refused = () => page.waitForFunction(() => /name/.test(document.querySelector("#problem:not([hidden])")?.textContent));
+  await page.click("#make-region");
+  await refused();
+  await page.click("#problem .close");
+  await page.fill("#new-region", "spot!");
+  await page.press("#new-region", "Enter");
+  await refused();
+  assert.equal(await page.inputValue("#new-region"), "spot!");
   await page.fill("#new-region", "spot");
   await page.click("#make-region");
   await page.waitForSelector('[data-table="region.spot"]', { state: "attached" });
+  assert.equal(await page.inputValue("#add-region"), "spot");
   await page.click("#undo");
   await page.waitForSelector('[data-table="region.spot"]', { state: "detached" });
   await page.click("#redo");
@@ -138,7 +148,7 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.fill(tension, "-3");
   await page.waitForSelector(`${tension}[aria-invalid="true"]`);
   assert.match(await page.textContent(`.field:has(${tension}) .fault`), />= 0/);
-  await page.fill(tension, "1.6");
+  await page.fill(tension, "1,6");
   await page.press(tension, "Enter");
   await page.waitForFunction(() => document.querySelector("#text").textContent.includes("tension_mN_per_m = 1.6"));
   assert.match(await page.textContent("#text"), /base = "furrow-slice"/);
@@ -146,7 +156,7 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   // A new force can be set at once.
   await page.selectOption("#add-kind", "cortex.*");
   await page.fill("#add-name", "new");
-  await page.fill("#add-region", "spot");
+  await page.selectOption("#add-region", "spot");
   await page.click("#add");
   await page.fill('[data-key="cortex.new.tension_mN_per_m"]', "0.5");
   await page.press('[data-key="cortex.new.tension_mN_per_m"]', "Enter");
@@ -169,10 +179,14 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.click("#undo");
   await page.waitForFunction(() => document.querySelector("#text").textContent.includes("end_s = 240"));
 
+  await page.selectOption("#paint-into", "spot");
   await page.fill("#until", "1");
   await page.click("#go-to");
   await page.waitForFunction(() => document.querySelector('li[data-run="1"]')?.dataset.status === "paused");
   assert.equal(await shownRun(page), 1);
+  // The cells painted into a region are not those to act on.
+  assert.deepEqual([await page.isDisabled("#paint-into"), await page.textContent("#selected-count")], [true, "0 cells"]);
+  assert.equal(new URL(page.url()).hash, "#run-1");
   await page.waitForFunction(() => /^[1-9]/.test(document.querySelector("#time-text").textContent) &&
     document.querySelector("#plots canvas"));
 

@@ -194,15 +194,48 @@ class Draft:
         return draft
 
 
+def _with_least(start: Table, table: Table) -> Table:
+    """Return `start` with each named table of `table` that it lacks, of no more keys than such a table needs."""
+    made = copy.deepcopy(start)
+    for kind, rows in ((one["path"][:-2], one["rows"]) for one in schema() if one["path"].endswith(".*")):
+        needed = {row["key"] for row in rows if row["required"]} | {"region", *BEGUN.get(kind, {})}
+        for name, values in table.get(kind, {}).items():
+            if isinstance(values, dict) and name not in made.get(kind, {}):
+                least = {key: value for key, value in values.items() if key in needed}
+                made.setdefault(kind, {})[name] = least or values
+    return made
+
+
+def defaults_of(table: Table) -> list[str]:
+    """Return the dotted keys of named tables that have their default values."""
+    least = _with_least({"format": 1, "embryo": table["embryo"]}, table)
+    given = dict(_items(least))
+    try:
+        known = Scenario(least).to_dict()
+    except ScenarioError:  # a law that needs more than is known here
+        return []
+    differ = differences(table, known)
+    return [key for key, _ in _items(table) if key.count(".") > 1 and key not in given and key not in differ]
+
+
 def text_of(table: Table, base: str) -> str:
     """Write a complete scenario as its differences from a built-in one or from defaults, or whole where these fail."""
     for start in [{"format": 1, "base": base}] * bool(base) + [{"format": 1, "embryo": table["embryo"]}]:
-        try:
-            short = changed(start, differences(table, Scenario(start).to_dict()))
-            read = Scenario(short).to_dict()
-        except ScenarioError:  # a file of cells that is gone, say
-            continue
-        read.pop("expect", None)
-        if read == table:
-            return toml(short)
+        for least in (True, False):
+            try:
+                known = Scenario(start).to_dict()
+                begin = changed(start, _added(known, _with_least(known, table))) if least else start
+                short = changed(begin, differences(table, Scenario(begin).to_dict()))
+                read = Scenario(short).to_dict()
+            except ScenarioError:  # a file of cells that is gone, say
+                continue
+            read.pop("expect", None)
+            if read == table:
+                return toml(short)
     return toml(table)
+
+
+def _added(before: Table, after: Table) -> Table:
+    """Return the named tables that one of two nested tables has more, by dotted name."""
+    return {f"{kind}.{name}": values for kind, inner in after.items() if isinstance(inner, dict)
+            for name, values in inner.items() if isinstance(values, dict) and name not in before.get(kind, {})}

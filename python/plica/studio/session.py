@@ -19,13 +19,14 @@ from ..errors import PlicaError
 from ..scenario import Scenario, _items, builtin_scenarios
 from ..simulation import Simulation
 from .acts import act, end_of_act, running_acts, time_of_act
-from .draft import STARTS, Draft, Table, begun, row_of, schema, text_of, typed
+from .draft import STARTS, Draft, Table, begun, defaults_of, differences, row_of, schema, text_of, typed
 from .rest import Rest
 from .run import StudioRun
 from .tissues import ENDINGS, Candidate
 
 FOLDER = ".plica-studio"
 MOST_FILES, MOST_SEEN, MOST_FILE_BYTES, MOST_RUNS = 500, 20_000, 500_000_000, 100
+MOST_NAMED = 2  # changes in the title of a run
 NAME = re.compile(r"[A-Za-z0-9_-]{1,60}")
 
 
@@ -106,6 +107,7 @@ class Session:
                         "problem": self.rest.problem, "advice": self.rest.advice, "candidate": self.candidate.state()}
         if draft is not None:
             state |= {"table": draft.table, "base": draft.base, "base_table": draft.base_table, "text": draft.text(),
+                      "defaults": defaults_of(draft.table),
                       "undo": draft.place > 0, "redo": draft.place < len(draft.history) - 1}
         return state
 
@@ -276,10 +278,22 @@ class Session:
     def do_start(self, until_s: Optional[float] = None) -> Table:
         """Run the draft from rest."""
         draft = self._drafted()
-        run = self._new_run(draft.table, draft.base, str(draft.table.get("title") or "scenario"), None, 0.0)
+        run = self._new_run(draft.table, draft.base, self._title(draft), None, 0.0)
         run.go(math.inf if until_s is None else float(until_s))
         self.told()
         return {"run": run.number}
+
+    def _title(self, draft: Draft) -> str:
+        """Return the scenario's title or, where a run of nearly the same scenario exists, what is different from it."""
+        for run in reversed(self.runs.values()):
+            earlier = run.scenario.to_dict()
+            values = differences(draft.table, earlier)
+            changes = [*values, *(key for key in differences(earlier, draft.table) if key not in values)]
+            if not changes:
+                return f"run {run.number} again"
+            if len(changes) <= MOST_NAMED:
+                return f"run {run.number} with " + ", ".join(_change(key, values.get(key)) for key in changes)
+        return str(draft.table.get("title") or "scenario")
 
     def do_go(self, run: int, until_s: Optional[float] = None) -> Table:
         self._run(run).go(math.inf if until_s is None else float(until_s))
@@ -381,6 +395,12 @@ class Session:
             if number == still.number:
                 return still.frame_message(want)
         return self.runs[number].frame_message(want) if number in self.runs else []
+
+
+def _change(key: str, value: Any) -> str:
+    if value is None:
+        return f"no {key}"
+    return f"other {key}" if isinstance(value, list) else f"{key} = {value}"
 
 
 def _clock(time_s: float) -> str:

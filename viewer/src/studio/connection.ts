@@ -46,6 +46,7 @@ export interface DraftState {
   base?: string;
   base_table?: Table | null;
   text?: string;
+  defaults?: string[]; // keys of named tables that have their default values
   undo?: boolean;
   redo?: boolean;
 }

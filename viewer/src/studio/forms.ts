@@ -48,6 +48,7 @@ export class Forms {
   private isDragging = false;
   private readonly list = element("div", { id: "tables" });
   private readonly arrays = element("datalist", { id: "array-names" });
+  private readonly region = element("select", { id: "add-region", "aria-label": "Region" }, element("option", {}, "all"));
   private readonly filter = element("input", { type: "search", id: "find-key", placeholder: "Find a key",
     "aria-label": "Find a key" });
 
@@ -73,13 +74,30 @@ export class Forms {
   show(draft: DraftState): void {
     const isSame = this.draft?.revision === draft.revision && this.list.childElementCount > 0;
     this.draft = draft;
+    this.showRegions();
     if (this.schema.length > 0 && !isSame && !this.isDragging) this.build();
+  }
+
+  /** Propose a region for the next table. */
+  addTo(region: string): void {
+    if (![...this.region.options].some(({ value }) => value === region))
+      this.region.append(element("option", { value: region }, region));
+    this.region.value = region;
+  }
+
+  private showRegions(): void {
+    const before = this.region.value;
+    const named = Object.keys((this.draft?.table?.region as Table | undefined) ?? {});
+    const names = [...new Set(["all", ...this.regionSizes.keys(), ...named])];
+    this.region.replaceChildren(...names.map((name) => element("option", { value: name }, name)));
+    this.region.value = names.includes(before) ? before : "all";
   }
 
   /** Take the bounds of sliders from a tissue. */
   fit(shape: Shape, regionSizes: Map<string, number>): void {
     this.regionSizes = regionSizes;
     this.showSizes();
+    this.showRegions();
     if (JSON.stringify([shape.box, shape.own_fields]) === JSON.stringify([this.shape?.box, this.shape?.own_fields])) return;
     this.shape = shape;
     this.arrays.replaceChildren(...Object.keys(shape.own_fields).map((name) => element("option", { value: name })));
@@ -128,7 +146,8 @@ export class Forms {
     const shape = String(valueAt(this.draft?.table, "embryo.shape") ?? "");
     const rows = schema.rows.filter(({ key, instead_of, shapes }) =>
       key !== "base" && key !== "format" && instead_of === "" && (shapes.length === 0 || shapes.includes(shape)));
-    const has = (row: KeyRow) => valueAt(values, row.key) !== undefined;
+    const isShown = ({ key }: KeyRow) => valueAt(values, key) !== undefined &&
+      !(key.includes(".") && this.draft?.defaults?.includes(prefix + key)); // noise, pulses and so on, where there are none
     const differs = base && rows.some(({ key }) => this.differs(prefix + key));
     details.append(element("summary", { title: plain(schema.meaning) }, name === "" ? "General" : name,
       ...(differs ? [element("span", { class: "changed", title: `differs from ${this.draft?.base}` }, " ●")] : []),
@@ -137,11 +156,11 @@ export class Forms {
     const fill = () => {
       details.dataset.filled = "true";
       details.append(element("p", { class: "note" }, plain(schema.meaning)));
-      details.append(...rows.filter(has).filter(({ key }) => !this.isCurve(key)).map((row) => this.field(prefix, row,
+      details.append(...rows.filter(isShown).filter(({ key }) => !this.isCurve(key)).map((row) => this.field(prefix, row,
         values)));
       for (const inner of new Set(rows.filter(({ key }) => this.isCurve(key)).map(({ key }) => key.split(".")[0])))
         details.append(this.curve(prefix + inner, valueAt(values, inner) as Table | undefined));
-      const rest = rows.filter((row) => !has(row) && !this.isCurve(row.key));
+      const rest = rows.filter((row) => !isShown(row) && !this.isCurve(row.key));
       if (rest.length > 0)
         details.append(this.rememberOpen(`more of ${name}`, element("details", { class: "more" },
           element("summary", {}, `${rest.length} more keys`), ...rest.map((row) => this.field(prefix, row, values)))));
@@ -246,8 +265,9 @@ export class Forms {
   private listen(key: string, row: KeyRow, input: HTMLInputElement | HTMLSelectElement, fault: HTMLElement): void {
     const value = () => {
       if (input instanceof HTMLInputElement && input.type === "checkbox") return input.checked;
-      const minutes = this.inMinutes.has(row) && input.value.trim() !== "" ? Number(input.value) : NaN;
-      return Number.isFinite(minutes) ? Number((60 * minutes).toPrecision(12)) : input.value;
+      const text = row.type === "number" ? input.value.trim().replace(/^([-+]?\d*),(\d+)$/, "$1.$2") : input.value;
+      const minutes = this.inMinutes.has(row) && text !== "" ? Number(text) : NaN;
+      return Number.isFinite(minutes) ? Number((60 * minutes).toPrecision(12)) : text;
     };
     const seconds = this.inMinutes.has(row) ? " (in seconds)" : "";
     const tell = (problem: unknown) => {
@@ -325,8 +345,7 @@ export class Forms {
     const kind = element("select", { id: "add-kind", "aria-label": "Kind of table" });
     const name = element("input", { type: "text", id: "add-name", placeholder: "name",
       "aria-label": "Name of the table" });
-    const region = element("input", { type: "text", id: "add-region", value: "all", list: "region-names",
-      "aria-label": "Region" });
+    const region = this.region;
     const add = element("button", { type: "submit", id: "add" }, "Add");
     const fault = element("span", { class: "fault", role: "alert" });
     const form = element("form", { id: "adding" }, kind, name, element("label", {}, "in ", region), add, fault);
@@ -336,12 +355,18 @@ export class Forms {
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       const given = { kind: kind.value.replace(".*", ""), name: name.value.trim(), region: region.value };
+      if (given.name === "") {
+        fault.textContent = "It has no name; type one.";
+        return name.focus();
+      }
       const path = `${given.kind}.${given.name}`;
-      this.opened.add(path).add(`more of ${path}`); // a new table has few keys yet
+      this.opened.add(path);
       this.connection.order("add", given).then(
         () => {
           [fault.textContent, name.value] = ["", ""];
-          this.list.querySelector(`[data-table="${CSS.escape(path)}"]`)?.scrollIntoView({ block: "nearest" });
+          const made = this.list.querySelector(`[data-table="${CSS.escape(path)}"]`);
+          made?.scrollIntoView({ block: "nearest" });
+          made?.querySelector("summary")?.focus();
         },
         (problem: Problem) => (fault.textContent = problem.message));
     });

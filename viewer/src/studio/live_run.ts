@@ -20,6 +20,7 @@ export class LiveTopology extends Topology {
   readonly rest: Float32Array;
   now: Float32Array; // positions
   shown: Numbers | null = null; // values of the field of the last frame
+  shownField = "";
   other: LiveTopology | null = null; // the run beside it, for differences
   colouredRegions: string[] = []; // those with some but not all cells
   private readonly members = new Map<string, Set<number>>(); // of each region
@@ -92,14 +93,14 @@ export class LiveTopology extends Topology {
   override values(field: Field, _moment: number, _part: number, out: Float32Array): void {
     const values = this.valuesOf(field);
     if (values) out.set(values);
-    else out.fill(0);
+    else out.fill(field.scale === "about" ? (field.low + field.high) / 2 : field.low); // not sent yet: pale
   }
 
   private valuesOf(field: Field): Numbers | null {
     if (field.name === "difference") return this.difference();
     if (field.name === "region") return this.regionNumbers;
     const own = this.given.get(`field/${field.name}`);
-    const values = own ?? this.shown;
+    const values = own ?? (this.shownField === field.name ? this.shown : null);
     return values && values.length === (field.on_nodes ? this.nodes : this.cells) ? values : null;
   }
 
@@ -169,6 +170,7 @@ export class LiveRun extends Run {
     const { head, arrays } = message;
     topology.now = arrays.get("positions") as Float32Array;
     topology.shown = arrays.get("values") ?? null;
+    topology.shownField = head.field;
     this.time = head.time_s;
     if (this.shown !== topology) {
       this.shown = topology;

@@ -61,6 +61,8 @@ class Studio {
   private readonly start: Start;
   private readonly candidate: CandidatePanel;
   private candidateState: Candidate | null = null;
+  private address = location.hash; // names the run to look at first
+  private failureRead = 0; // run whose failure was closed
   private hasNoPicture = false;
   private hasDraft = false;
   private lastField = "region";
@@ -138,7 +140,8 @@ class Studio {
   private tell(problem: unknown): void {
     const notice = byId("problem");
     notice.hidden = problem === null;
-    notice.textContent = problem instanceof Problem ? problem.message : problem === null ? "" : String(problem);
+    const text = problem instanceof Problem ? problem.message : problem === null ? "" : String(problem);
+    notice.replaceChildren(text, closing(notice));
   }
 
   private async go(untilS: number | null): Promise<void> {
@@ -187,6 +190,9 @@ class Studio {
 
   private takeRuns(runs: RunsState): void {
     this.panel.take(runs);
+    const linked = Number(/^#run-(\d+)$/.exec(this.address)?.[1]);
+    this.address = ""; // looked at once
+    if (this.panel.run(linked)) this.choose({ run: linked });
     this.nameRuns();
     this.showTime();
   }
@@ -275,7 +281,7 @@ class Studio {
     this.tools = new ToolsBar(byId("tools"), byId("acts-holder"), paintings, {
       clear: () => this.select(new Set()),
       paintInto: (region) => this.select(new Set(region === "" ? [] : this.runs[0].shown!.membersOf(region))),
-      makeRegion: (name) => void this.paint(name),
+      makeRegion: (name) => this.makeRegion(name),
       act: (kind, strength) => void this.act(kind, strength),
       end: (name) => void this.act("end", 0, name),
     });
@@ -313,8 +319,15 @@ class Studio {
       this.runs[1].shown = null;
       this.frameShown[1] = -1;
     }
+    // A region's cells were selected to be painted; in a run, only cells to act on are.
+    if (this.chosen.run > 0 && this.tools?.target.value) {
+      this.tools.target.value = "";
+      this.select(new Set());
+    }
     if (before.run <= 0 && this.chosen.run > 0 && this.state.now.field.name === "region") this.colour("area-ratio");
     if (this.chosen.run <= 0 && before.run > 0) this.colour("region");
+    history.replaceState(null, "", location.pathname + location.search +
+      (this.chosen.run > 0 ? `#run-${this.chosen.run}` : ""));
     this.showCandidate();
     this.state.set({ shown: new Set(this.chosen.beside === null ? [0] : [0, 1]) });
     this.nameRuns();
@@ -409,21 +422,31 @@ class Studio {
     for (const run of this.runs) run.marked = run.shown && run.shown.cells === this.runs[0].shown?.cells ? marked : [];
   }
 
-  private async paint(region: string): Promise<void> {
+  private async makeRegion(name: string): Promise<boolean> {
     if (this.chosen.run !== 0)
-      return this.tell("Regions belong to the tissue at rest; choose At rest under Runs, " +
-        "or act on the selected cells.");
+      this.tell("Regions belong to the tissue at rest; choose At rest under Runs, or act on the selected cells.");
+    else if (this.selection.size === 0) this.tell("No cells are selected; drag over some with the brush or the lasso.");
+    else if (name === "") this.tell("The region has no name; type one beside Make region.");
+    else if (await this.paint(name)) {
+      this.forms.addTo(name);
+      return true;
+    }
+    return false;
+  }
+
+  private async paint(region: string): Promise<boolean> {
     const begun = performance.now();
     const done = await this.order("paint", { region, ids: [...this.selection] });
-    if (!done) return;
+    if (!done) return false;
     const run = this.runs[0];
     run.shown!.setRegion(region, this.selection);
     run.data.coloured_regions = run.shown!.colouredRegions;
     this.views!.refresh();
     document.body.dataset.strokeMs = String(Math.round(performance.now() - begun));
-    if (this.tools.target.value === region) return;
+    if (this.tools.target.value === region) return true;
     this.tools.showRegions(run.shown!.regionNames);
     this.tools.target.value = region;
+    return true;
   }
 
   // The rest of the page
@@ -435,10 +458,11 @@ class Studio {
     this.state.set({ playing: run?.running === true && this.at === null });
     this.tools?.showActs(run ? timeText(Number(shown.toPrecision(4))) : null, run?.lasting ?? []);
     const failed = byId("failure");
-    failed.hidden = run?.status !== "failed";
-    if (run?.status !== "failed") return;
+    failed.hidden = run?.status !== "failed" || run.number === this.failureRead;
+    if (failed.hidden || !run) return;
     failed.replaceChildren(element("p", {}, element("strong", {},
-      `Run ${run.number} failed at ${timeText(run.time_s)}: `), run.failure));
+      `Run ${run.number} failed at ${timeText(run.time_s)}: `), run.failure),
+      closing(failed, () => (this.failureRead = run.number)));
     if (run.failed_cell === null) return;
     const cell = run.failed_cell;
     const show = element("button", { type: "button", "data-cell": String(cell) }, `Show cell ${cell}`);
@@ -529,6 +553,15 @@ function hasSameSize(a: LiveTopology, b: LiveTopology): boolean {
   const [ends, others] = [a, b].map(({ shape }) => [...shape.box.low, ...shape.box.high]);
   const size = Math.max(...ends) - Math.min(...ends);
   return ends.every((end, i) => Math.abs(end - others[i]) < 0.05 * size);
+}
+
+function closing(notice: HTMLElement, closed = () => {}): HTMLElement {
+  const close = element("button", { type: "button", class: "close", "aria-label": "Close" }, "×");
+  close.addEventListener("click", () => {
+    notice.hidden = true;
+    closed();
+  });
+  return close;
 }
 
 function niceAbove(value: number): number {

@@ -87,16 +87,19 @@ export class Painting {
   private readonly pixels = new CellPixels();
   private readonly trace = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   private readonly line = document.createElementNS("http://www.w3.org/2000/svg", "polyline");
+  private readonly ring = document.createElementNS("http://www.w3.org/2000/svg", "circle"); // the brush at the pointer
   private points: [number, number][] = [];
   private stroke: Stroke | null = null;
 
   constructor(private readonly view: RunView, private readonly tell: (stroke: Stroke) => void) {
     this.trace.classList.add("trace");
-    this.trace.append(this.line);
+    this.trace.append(this.line, this.ring);
+    this.showRing(null);
     view.box.append(this.trace);
     const { canvas } = view;
     canvas.addEventListener("pointerdown", (event) => this.begin(event), { capture: true });
     canvas.addEventListener("pointermove", (event) => this.move(event));
+    canvas.addEventListener("pointerleave", () => this.showRing(null));
     for (const kind of ["pointerup", "pointercancel"] as const) canvas.addEventListener(kind, () => this.end());
   }
 
@@ -104,6 +107,22 @@ export class Painting {
     this.tool = tool;
     this.view.controls.noRotate = tool !== "rotate";
     this.view.canvas.dataset.tool = tool;
+    this.showRing(null);
+  }
+
+  private showRing(event: PointerEvent | null): void {
+    const isShown = event !== null && this.tool === "brush";
+    this.ring.setAttribute("r", String(isShown ? this.size / 2 : 0));
+    if (!isShown) return;
+    const [x, y] = this.placeOf(event);
+    this.ring.setAttribute("cx", String(x));
+    this.ring.setAttribute("cy", String(y + this.view.canvas.offsetTop));
+  }
+
+  // CSS pixels from the upper left of the canvas
+  private placeOf(event: PointerEvent): [number, number] {
+    const box = this.view.canvas.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
   }
 
   private begin(event: PointerEvent): void {
@@ -116,9 +135,9 @@ export class Painting {
   }
 
   private move(event: PointerEvent): void {
+    this.showRing(event);
     if (!this.stroke) return;
-    const box = this.view.canvas.getBoundingClientRect();
-    const here: [number, number] = [event.clientX - box.left, event.clientY - box.top];
+    const here = this.placeOf(event);
     const before = this.points.at(-1) ?? here;
     this.points.push(here);
     if (this.tool === "lasso") {

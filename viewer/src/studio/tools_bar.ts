@@ -6,7 +6,7 @@ import type { Painting, Tool } from "./painting";
 export interface ToolActions {
   clear(): void;
   paintInto(region: string): void; // "": the selection
-  makeRegion(name: string): void;
+  makeRegion(name: string): Promise<boolean>; // whether it was made
   act(kind: string, strength: number): void;
   end(name: string): void;
 }
@@ -36,14 +36,12 @@ export class ToolsBar {
       made.setAttribute("aria-pressed", String(tool === "rotate"));
       choice.append(made);
     }
-    const make = button("make-region", "Make region", () => {
-      actions.makeRegion(this.newName.value.trim());
-      this.newName.value = "";
-    });
+    const make = button("make-region", "Make region", () => void this.makeRegion());
+    this.newName.addEventListener("keydown", ({ key }) => key === "Enter" && void this.makeRegion());
     holder.append(choice, element("span", { class: "group painter" }, element("label", {}, "size ", this.size),
       element("label", {}, this.erase, " erase"),
       element("label", { title: "cells at −y get the same as those at y" }, this.mirror, " mirror"),
-      element("label", {}, "paint ", this.target), this.count, button("clear-selection", "Clear", () =>
+      element("label", { title: "regions are painted at rest" }, "paint ", this.target), this.count, button("clear-selection", "Clear", () =>
         actions.clear()), this.newName, make), this.names);
     this.size.addEventListener("input", () => paintings.forEach((one) => (one.size = Number(this.size.value))));
     this.erase.addEventListener("change", () => paintings.forEach((one) => (one.erases = this.erase.checked)));
@@ -58,6 +56,12 @@ export class ToolsBar {
     this.holder.classList.toggle("painting", tool !== "rotate");
     for (const [name] of tools) document.getElementById(`tool-${name}`)!.setAttribute("aria-pressed",
       String(name === tool));
+  }
+
+  private async makeRegion(): Promise<void> {
+    const name = this.newName.value.trim();
+    if (await this.actions.makeRegion(name)) this.newName.value = "";
+    else if (name === "") this.newName.focus();
   }
 
   key(key: string): boolean {
@@ -98,6 +102,7 @@ export class ToolsBar {
     this.when.textContent = at === null ? "Choose a run: an act on it makes another run, from the shown time on."
       : `at ${at}`;
     for (const one of this.acts.querySelectorAll<HTMLButtonElement>("button")) one.disabled = at === null;
+    this.target.disabled = at !== null;
     const made = at === null ? [] : lasting.map((name) => button(`end-${name}`,
       `${name.startsWith("pressure") ? "Let go" : "Light again"}: ${name.split(".")[1]}`, () =>
         this.actions.end(name)));
