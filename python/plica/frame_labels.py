@@ -65,7 +65,7 @@ def _fill(volume: NDArray[np.uint32], tetrahedra: Floats, labels: NDArray[Any]) 
             below = np.where(rise > 0, np.maximum(below, bound), below)
             above = np.where(rise < 0, np.minimum(above, bound), above)
             inside &= (rise != 0) | (rest <= 0)
-        inside &= np.isfinite(below) & np.isfinite(above)  # flat tetrahedra have bounds without end
+        inside &= below - SHARED <= above + SHARED  # flat tetrahedra have bounds without end
         first = np.ceil(np.where(inside, below, 0) - SHARED).astype(np.int64)
         many = np.maximum(np.floor(np.where(inside, above, -1) + SHARED).astype(np.int64) - first + 1, 0)
         line = np.repeat(np.arange(len(of)), many)

@@ -5,6 +5,7 @@ import sys
 import numpy as np
 import plica
 import pytest
+from plica import frame_labels
 
 
 @pytest.fixture(scope="module")
@@ -249,3 +250,14 @@ def test_import_is_light():
     """What is large is imported when it is first needed. (How long an import takes is not tested: machines differ.)"""
     code = "import sys, plica; print({'pandas', 'matplotlib', 'pyvista', 'IPython', 'tqdm'} & set(sys.modules))"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "set()\n"
+
+
+def test_labels_of_elements_with_an_upright_face():
+    """A face that is upright up to rounding has bounds along its lines of voxels without end."""
+    corners = np.array([[2, 0, 0], [9, 0, 1e-20], [2, 7, 7], [4, 0, 7]], dtype=float)
+    volume = np.zeros((11, 9, 9), dtype=np.uint32)
+    frame_labels._fill(volume, corners[None], np.array([7]))
+    places = np.argwhere(np.ones(volume.shape))
+    shares = np.linalg.solve(np.vstack([corners.T, np.ones(4)]), np.vstack([places.T, np.ones(len(places))])).min(axis=0)
+    found = volume.ravel() == 7
+    assert found[shares > 1e-6].all() and not found[shares < -1e-6].any() and (shares > 1e-6).sum() > 4
