@@ -194,6 +194,8 @@ def calibrate(
 ) -> Calibration:
     """Fit keys of a scenario so that results meet targets, as ``plica calibrate`` does.
 
+    For measurements with errors, at several times and in several scenarios: `fit`.
+
     Parameters
     ----------
     scenario : Scenario, str, path or mapping
