@@ -185,7 +185,9 @@ test("open, paint, set, run, cut, compare, take away, repeat", options, async ()
   await page.waitForFunction(() => document.querySelector('li[data-run="1"]')?.dataset.status === "paused");
   assert.equal(await shownRun(page), 1);
   // The cells painted into a region are not those to act on.
-  assert.deepEqual([await page.isDisabled("#paint-into"), await page.textContent("#selected-count")], [true, "0 cells"]);
+  assert.deepEqual([await page.inputValue("#paint-into"), await page.textContent("#selected-count")], ["", "0 cells"]);
+  await page.selectOption("#paint-into", "spot");
+  assert.notEqual(await page.textContent("#selected-count"), "0 cells");
   assert.equal(new URL(page.url()).hash, "#run-1");
   await page.waitForFunction(() => /^[1-9]/.test(document.querySelector("#time-text").textContent) &&
     document.querySelector("#plots canvas"));

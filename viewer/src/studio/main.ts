@@ -280,7 +280,10 @@ class Studio {
       (stroke) => this.takeStroke(stroke)));
     this.tools = new ToolsBar(byId("tools"), byId("acts-holder"), paintings, {
       clear: () => this.select(new Set()),
-      paintInto: (region) => this.select(new Set(region === "" ? [] : this.runs[0].shown!.membersOf(region))),
+      paintInto: (region) => {
+        this.select(new Set(region === "" ? [] : this.runs[0].shown!.membersOf(region)));
+        if (this.chosen.run > 0) this.tools.target.value = ""; // strokes change the selection only
+      },
       makeRegion: (name) => this.makeRegion(name),
       act: (kind, strength) => void this.act(kind, strength),
       end: (name) => void this.act("end", 0, name),

@@ -16,6 +16,7 @@ const tools: [Tool, string, string][] = [["rotate", "Rotate", "v"], ["brush", "B
 export class ToolsBar {
   readonly target = element("select", { id: "paint-into", "aria-label": "What is painted" });
   readonly mirror = element("input", { type: "checkbox", id: "mirror" });
+  private readonly purpose = element("span", {}, "paint ");
   private readonly names = element("datalist", { id: "region-names" });
   private readonly count = element("output", { id: "selected-count" });
   private readonly erase = element("input", { type: "checkbox", id: "erase" });
@@ -41,7 +42,7 @@ export class ToolsBar {
     holder.append(choice, element("span", { class: "group painter" }, element("label", {}, "size ", this.size),
       element("label", {}, this.erase, " erase"),
       element("label", { title: "cells at −y get the same as those at y" }, this.mirror, " mirror"),
-      element("label", { title: "regions are painted at rest" }, "paint ", this.target), this.count, button("clear-selection", "Clear", () =>
+      element("label", { title: "In a run, chooses the cells of a region" }, this.purpose, this.target), this.count, button("clear-selection", "Clear", () =>
         actions.clear()), this.newName, make), this.names);
     this.size.addEventListener("input", () => paintings.forEach((one) => (one.size = Number(this.size.value))));
     this.erase.addEventListener("change", () => paintings.forEach((one) => (one.erases = this.erase.checked)));
@@ -102,7 +103,7 @@ export class ToolsBar {
     this.when.textContent = at === null ? "Choose a run: an act on it makes another run, from the shown time on."
       : `at ${at}`;
     for (const one of this.acts.querySelectorAll<HTMLButtonElement>("button")) one.disabled = at === null;
-    this.target.disabled = at !== null;
+    this.purpose.textContent = at === null ? "paint " : "select ";
     const made = at === null ? [] : lasting.map((name) => button(`end-${name}`,
       `${name.startsWith("pressure") ? "Let go" : "Light again"}: ${name.split(".")[1]}`, () =>
         this.actions.end(name)));
