@@ -52,16 +52,16 @@ class LabelledShapes(Mapping[float, dict[str, Array]]):
     ----------
     times_min : ndarray of float, shape (times,)
         Times.
-    labels : ndarray of int, shape (cells,)
-        Labels of the cells in the first frame, in the order of the scenario.
-    centres_um, areas_um2, heights_um : ndarray of float, shapes (times, cells, 3), (times, cells), (times, cells)
-        As measured; NaN where unknown, as z and heights are in images.
+    labels : ndarray of int
+        Label of each cell in the first frame, in the order of the scenario.
+    centres_um, areas_um2, heights_um : ndarray of float
+        By time and cell, as measured; NaN where unknown, as z and heights are in images.
     corners_um : ndarray of float, shape (times, corners, 3)
         Apical corners, in the order of ``points`` or ``apical`` of the cells; NaN where the same cells do not meet.
     rim : ndarray of int
         Corners on the outline of the tissue.
-    doubtful : ndarray of bool, shape (times, cells)
-        Cells that depart from a steady movement further than the noise, as wrong labels do.
+    doubtful : ndarray of bool
+        By time and cell: those that depart from a steady movement further than the noise, as wrong labels do.
     noise_um : float
         Standard deviation of a coordinate of changes since the first frame: `noise_um` of `plica.infer`.
     remarks : list of str

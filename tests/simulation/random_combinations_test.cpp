@@ -1,5 +1,5 @@
 // Tables of tissues that change, drawn at random with contact, mirror planes, periodic sheets and kites: a scenario is
-// refused by name, or runs with its volumes, without an inverted element, and resumes to the same bits.
+// refused by name, or runs with its volumes, without an inverted element, and resumes bitwise identically.
 #include <cstdlib>
 #include <regex>
 

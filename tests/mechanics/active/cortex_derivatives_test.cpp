@@ -1,5 +1,6 @@
 // Derivatives of the cortex by what a step begins with: relaxation, shape-dependent activity, polarity and noise.
 #include "mechanics/active/cortex.hpp"
+#include "support/cortices.hpp"
 #include "support/law_checks.hpp"
 
 namespace {
@@ -10,23 +11,10 @@ Tissue six_cells() {
   return distorted_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}}, 2, 3);
 }
 
-// All that a cortex can be, with programs that rise and fall in the step.
-CortexRule full_rule(CellSide side) {
-  return {.side = side,
-          .tension = 1.4,
-          .saturation = 0.16,
-          .stiffness = 0.7,
-          .compression_ratio = 0.1,
-          .crowding = 0.02,
-          .relaxation_s = 2,
-          .program = Program({0, 2}, {0, 1}),
-          .stiffness_program = Program({0, 4}, {1, 0.1})};
-}
-
 TEST(CortexDerivatives, OfARunAgreeWithFiniteDifferences) {
   const Tissue tissue = six_cells();
   for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
-    const Cortex law(tissue, every_cell, full_rule(side));
+    const Cortex law(tissue, every_cell, whole_cortex(side));
     std::vector<double> internal = law.first_internal(tissue);
     Random random(4);
     for (double& ratio : internal) ratio += random.number(0.2);
@@ -41,7 +29,7 @@ TEST(CortexDerivatives, OfShapeDependentActivityAgreeWithFiniteDifferences) {
   for (const ShapeMeasure measure : {ShapeMeasure::apical_area_ratio, ShapeMeasure::basal_area_ratio,
                                      ShapeMeasure::height_ratio, ShapeMeasure::apical_stretch})
     for (const Kind kind : {Kind::starts_below, Kind::starts_above, Kind::follows}) {
-      CortexRule rule = full_rule(CellSide::lateral);
+      CortexRule rule = whole_cortex(CellSide::lateral);
       rule.activation = {.kind = kind, .measure = measure, .threshold = 1.05, .from = 0.7, .to = 1.5};
       const Cortex law(tissue, every_cell, rule);
       const auto smooth = law.smooth();
@@ -60,7 +48,7 @@ TEST(CortexDerivatives, OfShapeDependentActivityAgreeWithFiniteDifferences) {
 TEST(CortexDerivatives, OfPolarityAndNoiseAgreeWithFiniteDifferences) {
   const Tissue tissue = six_cells();
   for (const bool across : {false, true}) {
-    CortexRule rule = full_rule(CellSide::lateral);
+    CortexRule rule = whole_cortex(CellSide::lateral);
     rule.walls = {WallDirection{across, 1.6, 0.4}, {.spread = 0.5, .correlation_s = 10, .seed = 3}};
     const Cortex law(tissue, every_cell, rule);
     check_law_derivatives(law, tissue, 2, law.first_internal(tissue));

@@ -7,6 +7,7 @@
 #include "mechanics/energy.hpp"
 #include "scenario/load.hpp"
 #include "simulation/simulation.hpp"
+#include "support/cortices.hpp"
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
@@ -16,28 +17,15 @@ namespace {
 
 CellSet all_cells(const Tissue& tissue) { return CellSet(tissue.cells.size(), true); }
 
-// All that a cortex can be, with numbers of the furrow's size.
-CortexRule whole_rule(CellSide side) {
-  return {.side = side,
-          .tension = 1.4,
-          .saturation = 0.16,
-          .stiffness = 0.7,
-          .compression_ratio = 0.1,
-          .crowding = 0.02,
-          .relaxation_s = 2,
-          .program = Program({0, 2}, {0, 1}),
-          .stiffness_program = Program({0, 4}, {1, 0.1})};
-}
-
 TEST(Cortex, DerivativesAgreeWithFiniteDifferences) {
   const Tissue tissue =
       distorted_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}}, 2, 3);
   for (const CellSide side : {CellSide::apical, CellSide::basal, CellSide::lateral}) {
-    check_derivatives(Cortex(tissue, all_cells(tissue), whole_rule(side)), tissue, 2);
-    check_semidefinite_tangent(Cortex(tissue, all_cells(tissue), whole_rule(side)), tissue, 2, true);
+    check_derivatives(Cortex(tissue, all_cells(tissue), whole_cortex(side)), tissue, 2);
+    check_semidefinite_tangent(Cortex(tissue, all_cells(tissue), whole_cortex(side)), tissue, 2, true);
   }
   // Without flow, and with nothing but a tension.
-  CortexRule rule = whole_rule(CellSide::lateral);
+  CortexRule rule = whole_cortex(CellSide::lateral);
   rule.relaxation_s = 0;
   check_derivatives(Cortex(tissue, all_cells(tissue), rule), tissue, 2);
   check_derivatives(Cortex(tissue, all_cells(tissue), {.side = CellSide::apical, .tension = 1}), tissue, 2);
@@ -47,11 +35,11 @@ TEST(Cortex, DerivativesAgreeWithFiniteDifferences) {
 TEST(Cortex, WhatItKeepsIsOfTheSameIterate) {
   const Tissue tissue =
       distorted_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}}, 2, 3);
-  const Cortex law(tissue, all_cells(tissue), whole_rule(CellSide::lateral));
+  const Cortex law(tissue, all_cells(tissue), whole_cortex(CellSide::lateral));
   const Vectors direction = Random(1).vectors(tissue.node_count());
   int cases = 0;
   const auto expect_as_new = [&](const Step& step) {
-    const Cortex fresh(tissue, all_cells(tissue), whole_rule(CellSide::lateral));
+    const Cortex fresh(tissue, all_cells(tissue), whole_cortex(CellSide::lateral));
     for (int again = 0; again < 2; ++again) {
       Vectors product(direction.size(), Vec3::Zero()), forces = product, of_fresh = product, forces_of_fresh = product;
       law.add_tangent_product(step, direction, product);
@@ -248,7 +236,7 @@ TEST(Cortex, IsHandedOnToDaughters) {
     Tissue tissue = build_block({.length_um = 60, .width_um = 60, .cell_height_um = 30, .cells = {3, 3, 1}});
     CellSet cells = all_cells(tissue);
     cells[2] = false;
-    const Cortex before(tissue, cells, whole_rule(side));
+    const Cortex before(tissue, cells, whole_cortex(side));
     std::vector<double> internal = before.first_internal(tissue);
     for (double& strain : internal) strain *= 0.9;
     Motion motion = at_rest(tissue);

@@ -6,6 +6,7 @@
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/surroundings.hpp"
 #include "solver/step/newton_stepper.hpp"
+#include "support/cortices.hpp"
 #include "support/law_checks.hpp"
 #include "support/models.hpp"
 
@@ -13,18 +14,11 @@ namespace {
 
 CellSet every(const Tissue& tissue) { return CellSet(tissue.cells.size(), true); }
 
-// All that a cortex with fibres can be; each cell has its own direction.
+// Each cell has its own direction.
 CortexRule fibred_rule(CellSide side, double share) {
-  return {.side = side,
-          .tension = 1.4,
-          .saturation = 0.16,
-          .stiffness = 0.7,
-          .compression_ratio = 0.1,
-          .crowding = 0.02,
-          .relaxation_s = 2,
-          .program = Program({0, 2}, {0, 1}),
-          .stiffness_program = Program({0, 4}, {1, 0.1}),
-          .fibres = {share, 90, {{0, 20, -30, 45, 90, 170}}}};
+  CortexRule rule = whole_cortex(side);
+  rule.fibres = {share, 90, {{0, 20, -30, 45, 90, 170}}};
+  return rule;
 }
 
 TEST(Fibres, DerivativesAgreeWithFiniteDifferences) {
