@@ -25,9 +25,9 @@ from pathlib import Path
 
 import numpy as np
 import plica
+from label_movies import damage, tracked
 from plica.frame_labels import voxels_of
 from plica.shape_targets import ApicalFaces
-from scipy.optimize import linear_sum_assignment
 from skimage.filters import gaussian
 from skimage.measure import label, regionprops
 from skimage.morphology import h_minima
@@ -88,33 +88,8 @@ def segmented(expected, wrong, rng):
     usual = np.median(sizes[1:])
     for number in np.flatnonzero(sizes > 8 * usual):
         labels[labels == number] = 0
-    regions = [region for region in regionprops(labels) if region.area > 0.3 * usual]
-    centres = np.array([region.centroid for region in regions]) * SPACING
-    for turn, chosen in enumerate(rng.choice(len(regions), round(wrong * len(regions)), replace=False)):
-        region = regions[chosen]
-        if turn % 2:
-            nearest = np.argsort(np.linalg.norm(centres - centres[chosen], axis=1))[1]
-            labels[labels == region.label] = regions[nearest].label
-        else:
-            angle = rng.uniform(0, np.pi)
-            beyond = (region.coords - region.centroid) * SPACING @ [0, np.cos(angle), np.sin(angle)] > 0
-            labels[tuple(region.coords[beyond].T)] = labels.max() + 1
+    damage(labels, [region for region in regionprops(labels) if region.area > 0.3 * usual], wrong, rng, SPACING)
     return labels
-
-
-def tracked(frames):
-    """Return rows of time, label, and label in the first frame: nearest centroids, one to one, at most half a cell apart."""
-    of_frame = [(np.array([region.centroid for region in regionprops(labels)]) * SPACING, [region.label for region in regionprops(labels)])
-                for labels in frames]
-    place, first = of_frame[0][0].copy(), of_frame[0][1]
-    rows = [(TIMES_MIN[0], one, one) for one in first]
-    for time_min, (centres, names) in zip(TIMES_MIN[1:], of_frame[1:]):
-        apart = np.linalg.norm(place[:, None] - centres[None], axis=2)
-        for track, found in zip(*linear_sum_assignment(np.minimum(apart, CELL_UM))):
-            if apart[track, found] < CELL_UM / 2:
-                rows.append((time_min, names[found], first[track]))
-                place[track] = centres[found]
-    return np.array(rows)
 
 
 def model_of(tissue):
@@ -156,7 +131,7 @@ def main():
     start = time.process_time()
     rng = np.random.default_rng(100 + given.seed)
     frames = [segmented(one, given.wrong, rng) for one in expected]
-    links = tracked(frames)
+    links = tracked(dict(zip(TIMES_MIN, frames)), CELL_UM / 2, SPACING)
     segmented_s = time.process_time() - start
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

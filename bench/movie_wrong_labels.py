@@ -15,24 +15,11 @@ import matplotlib
 
 matplotlib.use("Agg")
 import numpy as np  # noqa: E402
+from label_movies import damage  # noqa: E402
 from skimage.measure import regionprops  # noqa: E402
 
 LESSON = Path(__file__).resolve().parents[1] / "docs/notebooks/12_movie.md"
 WRONG = 0.05
-
-
-def damage(labels, rng):
-    regions = regionprops(labels)
-    centres = np.array([region.centroid for region in regions])
-    for turn, chosen in enumerate(rng.choice(len(regions), round(WRONG * len(regions)), replace=False)):
-        region = regions[chosen]
-        if turn % 2:
-            nearest = np.argsort(np.linalg.norm(centres - centres[chosen], axis=1))[1]
-            labels[labels == region.label] = regions[nearest].label
-        else:
-            angle = rng.uniform(0, np.pi)
-            beyond = (region.coords - region.centroid) @ [np.cos(angle), np.sin(angle)] > 0
-            labels[tuple(region.coords[beyond].T)] = 900 + turn
 
 
 def main():
@@ -44,7 +31,7 @@ def main():
         for number, cell in enumerate(code):
             if number == 2:  # before the shapes are measured
                 for labels in names["frames"]:
-                    damage(labels, rng)
+                    damage(labels, regionprops(labels), WRONG, rng)
             exec(cell, names)
         print("doubtful cells by frame:", names["shapes"].doubtful.sum(axis=1), f"r = {names['correlation']:.3f}")
         os.chdir("/")

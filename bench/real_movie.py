@@ -18,9 +18,9 @@ from pathlib import Path
 
 import numpy as np
 import plica
+from label_movies import tracked
 from plica.shape_targets import ApicalFaces
-from scipy.optimize import linear_sum_assignment
-from skimage.measure import label, regionprops
+from skimage.measure import label
 from tifffile import imread
 
 LAW = "cortex.apical"
@@ -34,20 +34,6 @@ def labels_of(path):
     return labels
 
 
-def tracked(frames, size_px):
-    """Return rows of time, label, and label in the first frame: nearest centroids, one to one, at most half a cell apart."""
-    of_frame = [(np.array([one.centroid for one in regionprops(labels)]), [one.label for one in regionprops(labels)]) for labels in frames]
-    place, first = of_frame[0][0].copy(), of_frame[0][1]
-    rows = [(0, one, one) for one in first]
-    for time, (centres, names) in enumerate(of_frame[1:], 1):
-        apart = np.linalg.norm(place[:, None] - centres[None], axis=2)
-        for track, found in zip(*linear_sum_assignment(np.minimum(apart, size_px))):
-            if apart[track, found] < size_px / 2:
-                rows.append((time, names[found], first[track]))
-                place[track] = centres[found]
-    return np.array(rows)
-
-
 def main():
     frames = [labels_of(Path(sys.argv[1]) / f"t_{number}.tif") for number in range(5)]
     size_px = np.sqrt(np.median(np.bincount(frames[0].ravel())[1:]))
@@ -55,7 +41,7 @@ def main():
     with warnings.catch_warnings(), tempfile.TemporaryDirectory() as folder:
         warnings.simplefilter("ignore")
         cells = plica.polygons_of_labels(frames[0], pixel_um)
-        shapes = plica.shapes_of_labels(dict(enumerate(frames)), pixel_um, cells=cells, links=tracked(frames, size_px))
+        shapes = plica.shapes_of_labels(dict(enumerate(frames)), pixel_um, cells=cells, links=tracked(dict(enumerate(frames)), size_px / 2))
         print(shapes, *shapes.remarks, sep="\n", flush=True)
         cells.write(Path(folder) / "cells.ply")
         scenario = plica.Scenario({

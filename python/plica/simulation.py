@@ -7,7 +7,7 @@ import logging
 import math
 import os
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Union, overload
 
@@ -31,6 +31,7 @@ __all__ = ["Simulation", "Step", "load"]
 
 log = logging.getLogger("plica")
 told_once: set[str] = set()  # warnings shown by this process
+LocalLaw = tuple[str, NDArray[np.int32], LocalEnergy]  # name, groups, energy
 
 
 def _warn_once(line: str) -> None:
@@ -110,13 +111,17 @@ class Simulation:
     def __init__(self, scenario: Union[Scenario, str, os.PathLike[str], Mapping[str, Any]], *, threads: Optional[int] = None,
                  energies: Optional[Mapping[str, LocalEnergy]] = None) -> None:
         own = scenario.copy() if isinstance(scenario, Scenario) else Scenario(scenario)
-        self._local = _local(energies)
-        core = _core.Simulation(own._ready, _threads(threads), energies=self._local)
+        local = _local(energies)
+        core = _core.Simulation(own._ready, _threads(threads), energies=local)
         own._check_masks(len(core.pressures))
-        self._begin(own, core)
+        self._begin(own, core, local)
 
-    def _begin(self, scenario: Scenario, core: _core.Simulation) -> None:
-        self._scenario, self._core = scenario, core
+    def _resume(self, scenario: Scenario, threads: int, saved: bytes, local: Sequence[LocalLaw] = ()) -> None:
+        """Begin in a saved state, which may be of another scenario."""
+        self._begin(scenario, _core.Simulation(scenario._ready, threads, saved, energies=list(local)), local)
+
+    def _begin(self, scenario: Scenario, core: _core.Simulation, local: Sequence[LocalLaw]) -> None:
+        self._scenario, self._core, self._local = scenario, core, local
         self._has_crossed = False
         for line in core.advice if core.steps == 0 else []:
             if line.startswith("warning: "):
@@ -406,8 +411,7 @@ class Simulation:
         >>> fork.set_activity("apical", 0)
         """
         other = object.__new__(Simulation)
-        other._local = self._local
-        other._begin(self._scenario.copy(), self._core.copy())
+        other._begin(self._scenario.copy(), self._core.copy(), self._local)
         return other
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
@@ -437,8 +441,7 @@ class Simulation:
         return {"scenario": self._scenario, "saved": self._core.save(), "threads": self._core.threads, "local": self._local}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        scenario, self._local = state["scenario"], state["local"]
-        self._begin(scenario, _core.Simulation(scenario._ready, state["threads"], state["saved"], energies=self._local))
+        self._resume(**state)
 
     # Present state
 
@@ -669,8 +672,7 @@ def load(
     try:
         scenario = Scenario(_core.scenario_of_saved(saved), tissue=tissue, arrays=arrays)
         simulation = object.__new__(Simulation)
-        simulation._local = _local(energies)
-        simulation._begin(scenario, _core.Simulation(scenario._ready, _threads(threads), saved, energies=simulation._local))
+        simulation._resume(scenario, _threads(threads), saved, _local(energies))
     except FileError as error:
         raise FileError(f"{source}: {error}") from error
     except UnicodeDecodeError as error:
@@ -678,7 +680,7 @@ def load(
     return simulation
 
 
-def _local(energies: Optional[Mapping[str, LocalEnergy]]) -> list[tuple[str, NDArray[np.int32], LocalEnergy]]:
+def _local(energies: Optional[Mapping[str, LocalEnergy]]) -> list[LocalLaw]:
     for name, energy in (energies or {}).items():
         text_of(name, "energies")
         if not isinstance(energy, LocalEnergy):

@@ -18,7 +18,6 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _core
 from ..errors import FileError, NumericsError, PlicaError
 from ..scenario import Scenario
 from ..simulation import Simulation
@@ -209,8 +208,7 @@ class StudioRun:
     def _loaded(self, checkpoint: Path) -> Simulation:
         """Return this scenario's simulation in the state of a checkpoint, which may be of another scenario."""
         sim = object.__new__(Simulation)
-        sim._local = []
-        sim._begin(self.scenario, _core.Simulation(self.scenario._ready, self.threads or 0, checkpoint.read_bytes()))
+        sim._resume(self.scenario, self.threads or 0, checkpoint.read_bytes())
         return sim
 
     def _take_over_rows(self) -> None:
