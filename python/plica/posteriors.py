@@ -5,6 +5,7 @@ approximate Bayesian computation. pyABC gives the same posterior (docs/developer
 """
 from __future__ import annotations
 
+import math
 import tempfile
 import warnings
 from collections.abc import Callable, Mapping
@@ -17,6 +18,7 @@ from .answers import _results, _set_log
 from .arguments import pairs_of, text_of, whole
 from .emulator import Array, Emulator, Range, _range
 from .errors import needed
+from .fits import fit
 from .names import in_columns, label as _label
 from .scenario import Scenario
 from .study import Study
@@ -139,6 +141,7 @@ def posterior(
     normal: the `sd` of a target must include measurement error and model discrepancy. The emulator variance is added, so a poor
     emulator widens the posterior. Samples come from population Monte Carlo (Cappé et al. 2004; docs/references.bib):
     rounds of importance sampling around the previous weighted samples, with a likelihood tempered from flat to full.
+    With gradients, they are runs drawn around the best fit instead, by its covariance (Laplace's approximation).
 
     Parameters
     ----------
@@ -151,9 +154,10 @@ def posterior(
         Output variables, each with value and standard deviation, in its unit.
     on : str
         "emulator": evaluate Gaussian processes fitted to the runs. "runs": weight the runs by their likelihood (0 if a target
-        is missing), which requires many runs of kind "sobol" or "latin-hypercube".
+        is missing), which requires many runs of kind "sobol" or "latin-hypercube". "gradients": fit a scenario (`fit`), draw runs
+        around the fit and weight them by their likelihood; targets need a gradient (`Tape.gradient`), and one best fit.
     runs : int, optional
-        Number of runs of a scenario; by default 20 per key.
+        Number of runs of a scenario; by default 20 per key, and 200 with gradients, beside those of the fit.
     samples : int
         Number of samples drawn on the emulator.
     seed : int
@@ -168,7 +172,8 @@ def posterior(
     Raises
     ------
     ValueError
-        If there are no targets, a standard deviation is not positive, bounds exceed those of the study, or no sample agrees.
+        If there are no targets, a standard deviation is not positive, bounds exceed those of the study, no sample agrees, or a target
+        has no gradient.
     ScenarioError
         If a key or output variable is unknown.
 
@@ -190,19 +195,23 @@ def posterior(
         raise ValueError("posterior: give targets as {output: (value, sd)}, each sd > 0")
     keys = pairs_of({} if keys is None else keys, "keys", "(low, high)")
     whole(samples, "samples", 2), whole(seed, "seed", 0, 2**32 - 1)
-    if text_of(on, "on") not in ("emulator", "runs"):
-        raise ValueError(f'posterior: on={on!r}; give "emulator" or "runs"')
-    if isinstance(source, Study):
-        study = source
+    if text_of(on, "on") not in ("emulator", "runs", "gradients"):
+        raise ValueError(f'posterior: on={on!r}; give "emulator", "runs" or "gradients"')
+    if on == "gradients" and isinstance(source, Study):
+        raise ValueError('posterior: on="gradients" makes its own runs; give a scenario instead of a study')
+    if not isinstance(source, Study) and not keys:
+        raise ValueError("posterior: give keys as {key: (low, high)}")
+    count = (200 if on == "gradients" else 20 * len(keys)) if runs is None else whole(runs, "runs")
+    if on == "gradients":
+        found = _by_gradients(_scenario_of(source), keys, targets, count, seed, jobs, progress)
     else:
-        if not keys:
-            raise ValueError("posterior: give keys as {key: (low, high)}")
-        count = 20 * len(keys) if runs is None else whole(runs, "runs")
-        study = _made(source, keys, list(targets), count, seed, jobs, progress)
-    ranges = _prior(study, keys)
-    found = _of_runs(study, ranges, targets) if on == "runs" else _on_emulator(study, ranges, targets, samples, seed)
+        study = source if isinstance(source, Study) else _made(
+            _scenario_of(source), {key: {"low": low, "high": high} for key, (low, high) in keys.items()},
+            {"kind": "sobol", "points": count, "seed": seed}, list(targets), jobs, progress)
+        ranges = _prior(study, keys)
+        found = _of_runs(study, ranges, targets) if on == "runs" else _on_emulator(study, ranges, targets, samples, seed)
     if found.effective_size < FEW:
-        more = "take more runs, or the emulator" if on == "runs" else "take more samples"
+        more = {"runs": "take more runs, or the emulator", "gradients": "take more runs"}.get(on, "take more samples")
         warnings.warn(f"posterior: only {found.effective_size:.0f} effective samples; {more}", stacklevel=2)
     for measure, row in found.targets.iterrows():
         if abs(row["mean"] - row.value) > 3 * row.sd:
@@ -211,16 +220,18 @@ def posterior(
     return found
 
 
-def _made(source: Union[Scenario, str], keys: Mapping[str, tuple[float, float]], measures: list[str], runs: int, seed: int,
-          jobs: Optional[int], progress: bool) -> Study:
-    scenario = source if isinstance(source, Scenario) else Scenario(source)
+def _scenario_of(source: Any) -> Scenario:
+    return source if isinstance(source, Scenario) else Scenario(source)
+
+
+def _made(scenario: Scenario, vary: Mapping[str, Any], design: Mapping[str, Any], measures: list[str], jobs: Optional[int],
+          progress: bool) -> Study:
     scenario._require_file("posterior")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "scenario.toml"
         file.write_text(scenario.to_toml(), encoding="utf-8")
         study = Study({
-            "scenario": str(file), "vary": {key: {"low": low, "high": high} for key, (low, high) in keys.items()},
-            "design": {"kind": "sobol", "points": runs, "seed": seed}, "keep": {"measures": measures},
+            "scenario": str(file), "vary": vary, "design": design, "keep": {"measures": measures},
         })
         study.run(jobs=jobs, progress=progress)
     return study
@@ -270,6 +281,54 @@ def _on_emulator(study: Study, ranges: dict[str, Range], targets: Mapping[str, t
 
     places, log_weights = population_monte_carlo(log_likelihood, len(ranges), samples, np.random.default_rng(seed))
     return _weighted(pandas.DataFrame(values_at(places)), log_weights, predict(places)[0], ranges, targets)
+
+
+def _by_gradients(scenario: Scenario, keys: Mapping[str, tuple[float, float]], targets: Mapping[str, tuple[float, float]],
+                  runs: int, seed: int, jobs: Optional[int], progress: bool) -> Posterior:
+    ranges = {key: Range(float(low), float(high), False) for key, (low, high) in keys.items()}
+    start = scenario.copy()
+    for key, one in ranges.items():
+        value = start[key]
+        if isinstance(value, (int, float)) and not one.low <= value <= one.high:
+            start[key] = (one.low + one.high) / 2
+    best = fit(start, targets, of=keys, progress=progress)
+    # In the unit cube of the prior, whose variance is 1/12 along what targets leave open.
+    slopes = best.jacobian * [(one.high - one.low) / (best.values[key] if one.low > 0 else 1.0) for key, one in ranges.items()]
+    covariance = np.linalg.inv(slopes.T @ slopes + 12 * np.eye(len(keys)))
+    middle = np.array([one.to_unit(np.array([best.values[key]]))[0] for key, one in ranges.items()])
+    places, log_proposal = _about(middle, covariance, runs, np.random.default_rng(seed))
+    values = {key: {"values": one.from_unit(places[:, k]).tolist()} for k, (key, one) in enumerate(ranges.items())}
+    table = _made(scenario, values, {"kind": "list"}, list(targets), jobs, progress).table
+    results = np.column_stack([_results(table, measure) for measure in targets])
+    logs = _log_likelihood(results, np.zeros_like(results), targets)
+    return _weighted(table[list(ranges)], logs - log_proposal, results, ranges, targets)
+
+
+def _about(middle: Array, covariance: Array, count: int, random: np.random.Generator) -> tuple[Array, Array]:
+    """Draw places in the unit cube, and return their log-density.
+
+    9 of 10 from Student's distribution (4 degrees of freedom) of twice this covariance, 1 of 10 even. Places outside the cube are
+    redrawn, which raises the density inside by one factor, found by drawing.
+    """
+    dimensions, freedom = len(middle), 4
+    factor = np.linalg.cholesky(2 * covariance)
+
+    def drawn(number_of: int) -> Array:
+        width = np.sqrt(freedom / random.chisquare(freedom, number_of))
+        places = middle + width[:, None] * random.standard_normal((number_of, dimensions)) @ factor.T
+        return np.asarray(places[((places >= 0) & (places <= 1)).all(axis=1)])
+
+    trials = 10_000
+    near = drawn(trials)
+    inside = len(near) / trials
+    wanted = count - count // 10
+    while len(near) < wanted:
+        near = np.concatenate([near, drawn(trials)])
+    places = np.concatenate([near[:wanted], random.random((count - wanted, dimensions))])
+    squares = (np.linalg.solve(factor, (places - middle).T) ** 2).sum(axis=0)
+    constant = math.lgamma((freedom + dimensions) / 2) - math.lgamma(freedom / 2) - dimensions / 2 * math.log(freedom * math.pi)
+    logs = constant - np.log(np.diag(factor)).sum() - (freedom + dimensions) / 2 * np.log1p(squares / freedom)
+    return places, np.logaddexp(math.log(0.9) + logs - math.log(inside), math.log(0.1))
 
 
 def _log_likelihood(means: Array, deviations: Array, targets: Mapping[str, tuple[float, float]]) -> Array:

@@ -9,7 +9,7 @@ import pytest
 import plica
 from plica.names import name_and_unit
 from plica.emulator import Range
-from plica.posteriors import _proposed, population_monte_carlo
+from plica.posteriors import _about, _proposed, population_monte_carlo
 
 YOUNG, POISSON = "elasticity.young_modulus_Pa", "elasticity.poisson_ratio"
 TENSION = "cortex.shortening.tension_mN_per_m"
@@ -459,6 +459,51 @@ def test_posterior_of_a_scenario():
     scenario["time.end_min"] = 0.5
     found = plica.posterior(scenario, {YOUNG: (300, 1500)}, {"max_volume_error": (1e-9, 1.0)}, runs=8, jobs=1)
     assert len(found.samples) == 10000 and found.mean[YOUNG] == pytest.approx(900, rel=0.05)
+
+
+BLOCK = {"embryo": {"shape": "block", "length_um": 60, "width_um": 40, "cell_height_um": 20, "cells": [3, 2, 1], "elements_per_cell": [1, 1, 2]},
+         "cortex": {"top": {"region": "all", "tension_mN_per_m": 2}}, "time": {"end_s": 60}, "stop": {"at_equilibrium": False},
+         "monitor": {"top": {"quantity": "area", "over": "sum"}}}
+
+
+def test_posterior_by_gradients():
+    """Of one key, against a sum over its values; and of a second key that the target leaves open."""
+    key, area = "cortex.top.tension_mN_per_m", "top.area_um2"
+
+    def area_at(tension):
+        sim = plica.Simulation({**BLOCK, "cortex": {"top": {"region": "all", "tension_mN_per_m": float(tension)}}})
+        sim.run()
+        return sim.measures[area]
+
+    tensions, target = np.linspace(1.5, 4, 201), (area_at(2.5), 40.0)
+    few = np.linspace(1.5, 4, 9)
+    areas = np.polynomial.Polynomial.fit(few, [area_at(one) for one in few], 6)(tensions)
+    weights = np.exp(-0.5 * ((areas - target[0]) / target[1]) ** 2)
+    weights /= weights.sum()
+    mean, sd = weights @ tensions, np.sqrt(weights @ tensions**2 - (weights @ tensions) ** 2)
+    found = plica.posterior(plica.Scenario(BLOCK), {key: (1.5, 4)}, {area: target}, on="gradients", jobs=1)
+    assert found.effective_size > 120
+    assert found.mean[key] == pytest.approx(mean, abs=0.25 * sd) and np.sqrt(found.covariance.loc[key, key]) == pytest.approx(sd, rel=0.2)
+    # The area depends on the ratio of tension and stiffness, so both are known less well than the ratio.
+    both = plica.posterior(plica.Scenario(BLOCK), {key: (1.5, 4), YOUNG: (800, 1250)}, {area: target}, on="gradients", runs=120, jobs=1)
+    spread = np.sqrt(np.diag(both.covariance))
+    assert both.effective_size > 40 and spread[0] > 1.5 * sd and spread[1] > 90
+    assert both.covariance.loc[key, YOUNG] > 0.5 * spread.prod()
+
+
+def test_posteriors_by_gradients_that_are_none():
+    with pytest.raises(ValueError, match="has no gradient here; those that have"):
+        plica.posterior(plica.Scenario(BLOCK), {YOUNG: (400, 1200)}, {"max_volume_error": (0, 1)}, on="gradients")
+    with pytest.raises(ValueError, match="give a scenario instead of a study"):
+        plica.posterior(linear(32), targets=TARGETS, on="gradients")
+
+
+def test_the_density_about_a_fit_is_one():
+    """The mean of 1 over it is the volume of the cube, and of a part of it; also where half of what is drawn falls outside."""
+    places, logs = _about(np.array([0.02, 0.5]), np.array([[0.01, 0.004], [0.004, 0.02]]), 20000, np.random.default_rng(5))
+    assert np.exp(-logs).mean() == pytest.approx(1, rel=0.05)
+    part = (places < [0.2, 0.6]).all(axis=1)
+    assert (part * np.exp(-logs)).mean() == pytest.approx(0.12, rel=0.05)
 
 
 @pytest.mark.parametrize("arguments, told", [
