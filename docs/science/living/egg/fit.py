@@ -1,6 +1,7 @@
 """Fit a hypothesis of hypotheses.toml to its targets by slopes, and print its misfit and evidence.
 
-Usage: fit.py HYPOTHESIS FOLDER [--runs 8]. FOLDER keeps all runs: the same command continues after an interruption.
+Usage: fit.py HYPOTHESIS FOLDER [--runs 8] [--start FITTED]. It starts from egg.toml and `set`, or from the fit in FITTED. FOLDER keeps all
+runs: the same command continues after an interruption.
 Writes keys.csv and targets.csv (Fit.write), and evidence.json. Needs egg.obj (mesh.py).
 """
 import argparse
@@ -132,8 +133,12 @@ if __name__ == "__main__":
     parser.add_argument("hypothesis", choices=list(PLAN["hypothesis"]))
     parser.add_argument("folder", type=Path)
     parser.add_argument("--runs", type=int, default=8)
+    parser.add_argument("--start", type=Path)
     options = parser.parse_args()
     scenario, bounds = scenario_of(options.hypothesis)
+    if options.start:
+        known = json.loads((options.start / "evidence.json").read_text())["values"]
+        scenario.update({key: value for key, value in known.items() if key in bounds})
     warnings.simplefilter("ignore")
     fit = plica.fit(experiments(scenario), of=bounds, priors={key: prior(*ends) for key, ends in bounds.items()}, runs=options.runs,
                     tolerance=0.1, folder=options.folder, progress=True)

@@ -22,4 +22,4 @@ for file, content in (("set.toml", scenario.to_toml()), ("experiments.toml", tex
         (out / file).write_text(content)
 subprocess.run(["plica", "reproduce", out / "experiments.toml", "--out", out / "runs"], check=False)
 for row in csv.DictReader((out / "runs/experiments.csv").open()):
-    print(f"{row['experiment']:12} {row['outcome']:12} {row['number']:>12} {row['verdict']}")
+    print(f"{row['experiment']:12} {row['outcome']:12} {row['number']:>12} {row['judgement']}")
