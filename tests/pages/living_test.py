@@ -7,6 +7,8 @@ import tomllib
 import unittest
 from pathlib import Path
 
+import numpy as np
+
 import plica
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -67,6 +69,24 @@ class Living(unittest.TestCase):
 
     def test_a_wound_recoils(self):
         self.assertIn("µm wider (its sides recoil)", run("wound.py"))
+
+    def test_outcomes_of_the_egg_have_gradients(self):
+        self.assertIn("round.obj: 2392 cells", run("egg/mesh.py", self.folder))
+        sys.path.insert(0, str(LIVING / "egg"))
+        import fit
+        for hypothesis in fit.PLAN["hypothesis"]:
+            scenario, bounds = fit.scenario_of(hypothesis)
+            self.assertTrue(all(low < scenario[key] < high for key, (low, high) in bounds.items()), hypothesis)
+        scenario["embryo.file"] = str(self.folder / "round.obj")
+        egg = fit.Egg(scenario)
+        self.assertAlmostEqual(egg.section, np.pi * (90**2 - 55**2) / 3, delta=0.003 * egg.section)
+        rng = np.random.default_rng(1)
+        places = egg.rest + 0.3 * rng.standard_normal(egg.rest.shape)
+        change = rng.standard_normal(egg.rest.shape)
+        for outcome in (egg.height, egg.flank):
+            ends = [outcome(places + side * 1e-5 * change)[0] for side in (1, -1)]
+            slope = (outcome(places)[1] * change).sum()
+            self.assertAlmostEqual((ends[0] - ends[1]) / 2e-5, slope, delta=1e-6 * abs(slope))
 
 
 if __name__ == "__main__":

@@ -20,6 +20,6 @@ text = (fit.HERE / "experiments.toml").read_text().replace('scenario = "egg.toml
 for file, content in (("set.toml", scenario.to_toml()), ("experiments.toml", text.replace('"round.obj"', json.dumps(str(fit.HERE / "round.obj"))))):
     if not (out / file).exists():
         (out / file).write_text(content)
-subprocess.run(["plica", "reproduce", out / "experiments.toml", "--out", out / "runs"], check=False)
+subprocess.run(["plica", "reproduce", out / "experiments.toml", "--out", out / "runs", "--jobs", "1"], check=False)
 for row in csv.DictReader((out / "runs/experiments.csv").open()):
     print(f"{row['experiment']:12} {row['outcome']:12} {row['number']:>12} {row['judgement']}")
