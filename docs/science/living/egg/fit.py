@@ -63,7 +63,7 @@ class Egg:
         return length.mean(), gradient
 
     def flank(self, positions):
-        """Area of the section x = 0 between 60 and 120 degrees from the ventral midline, over that at rest; its gradient."""
+        """Area of the section x = 0 between 60 and 120 degrees from the ventral midline, relative to reference; its gradient."""
         gradient, h = np.zeros_like(positions), 1e-4
         for ring, sign in self.rings:
             for axis in (1, 2):
