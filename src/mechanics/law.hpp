@@ -181,6 +181,12 @@ class Law {
   [[nodiscard]] virtual std::vector<double> next_internal(const Step& step) const {
     return {step.internal.begin(), step.internal.end()};
   }
+  /// Return the internal state of the law of the whole tissue that this one, of a side, implies; or nothing, and that
+  /// law finds it itself.
+  [[nodiscard]] virtual std::optional<std::vector<double>> internal_of_whole(
+      std::span<const double> /*of_side*/) const {
+    return std::nullopt;
+  }
   /// Whether the law can read an internal state of a checkpoint. The default is for states of constant length.
   [[nodiscard]] virtual bool accepts(std::span<const double> internal, const Tissue& tissue) const {
     return internal.size() == first_internal(tissue).size();

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <omp.h>
 
+#include <chrono>
+
 #include "core/errors.hpp"
 #include "core/version.hpp"
 #include "measure/reference_run.hpp"
@@ -17,6 +19,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t most_cells_by_default = 2000;  // with one row per cell and frame in cells.csv
+
+// The list of frames is written as a whole. A killed run's may lack those of this time, until it is resumed.
+constexpr std::chrono::seconds between_lists{1};
 
 constexpr const char *series_csv = "series.csv", *lineage_csv = "lineage.csv";
 
@@ -91,7 +96,7 @@ void Recorder::go_on(const std::string& input_toml, RecordMemory memory) {
     throw FileError((directory_ / series_csv).string() + ": does not end at the time of the checkpoint");
   for (const double time_s : memory.frame_times_s) frames_.emplace_back(time_s, frame_file(frames_.size()));
   if (!frames_.empty()) last_frame_s_ = frames_.back().first;
-  write_collection(directory_ / "frames.pvd", frames_);
+  list_frames();
   remove_what_came_after(directory_, frames_.size());
   if (!listeners_.empty() && !frames_.empty()) {
     const ReferenceRun run(directory_);
@@ -135,6 +140,7 @@ void Recorder::cells_divided(const TissueChange& change) {
 nlohmann::ordered_json Recorder::finish() {
   if (last_frame_s_ != simulation_.time_s()) save_frame();
   writing_.finish();
+  list_frames();
   nlohmann::ordered_json summary = make_summary(scenario_, simulation_, rows_, wall());
   write_file(directory_ / "summary.json",
              summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
@@ -153,9 +159,14 @@ void Recorder::write(const FrameRecord& frame) {
   const std::string file = frame_file(frames_.size());
   write_mesh(directory_ / file, frame.mesh(), frame.positions, arrays, frame.time_s);
   frames_.emplace_back(frame.time_s, file);
-  write_collection(directory_ / "frames.pvd", frames_);
+  if (Clock::now() - listed_ >= between_lists) list_frames();
   if (!listeners_.empty()) tell(frame_of(frame.mesh(), frame.positions, arrays), frame.time_s);
   for (const auto& [table, columns] : frame.columns) append(table, csv_of_columns(columns));
+}
+
+void Recorder::list_frames() {
+  write_collection(directory_ / "frames.pvd", frames_);
+  listed_ = Clock::now();
 }
 
 void Recorder::tell(const Frame& frame, double time_s) {

@@ -76,6 +76,7 @@ class Recorder final : public SimulationListener {
   void save_frame();
   void write(const FrameRecord& frame);
   void write(Checkpoint& checkpoint);  // completed by what is written before it
+  void list_frames();                  // in frames.pvd
   void tell(const Frame& frame, double time_s);
 
   std::filesystem::path directory_;
@@ -93,6 +94,7 @@ class Recorder final : public SimulationListener {
   // Used in the background, or while nothing is written there.
   std::map<std::string, RowFile> tables_;               // by file name
   std::vector<std::pair<double, std::string>> frames_;  // time, file
+  Clock::time_point listed_;                            // when they were listed
   CheckpointFiles checkpoints_;
   std::vector<RecordListener*> listeners_;
   Background writing_;  // last member: destroyed first, since it uses the others

@@ -66,14 +66,19 @@ State FullModel::follow(const Model& side, const State& state) {
   grow(next.time_s);
   const BackwardDifference rates = rates_of(state_, next);
   const Vectors earlier = rates.ahead > 0 ? earlier_positions(state_) : Vectors();
-  next.internals = next_internals(model(), {.positions = next.positions,
-                                            .previous_positions = state_.positions,
-                                            .previous_velocities = state_.velocities,
-                                            .rate_s = rates.rate_s,
-                                            .end_time_s = next.time_s,
-                                            .earlier_positions = earlier,
-                                            .ahead = rates.ahead,
-                                            .internals = state_.internals});
+  const Step step{.positions = next.positions,
+                  .previous_positions = state_.positions,
+                  .previous_velocities = state_.velocities,
+                  .rate_s = rates.rate_s,
+                  .end_time_s = next.time_s,
+                  .earlier_positions = earlier,
+                  .ahead = rates.ahead,
+                  .internals = state_.internals};
+  for_laws(model(), step, [&](const Law& law, const Step& law_step) {
+    const std::size_t l = next.internals.size();
+    auto implied = side.laws[l]->internal_of_whole(state.internals[l]);
+    next.internals.push_back(implied ? std::move(*implied) : law.next_internal(law_step));
+  });
   follow_signals(model_, next);
   return std::exchange(state_, std::move(next));
 }

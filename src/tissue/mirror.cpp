@@ -108,6 +108,26 @@ class Reflecting {
 
 }  // namespace
 
+namespace {
+
+/// Return the identity, and all products of reflections in planes with these images of nodes by axis.
+std::vector<Mirror::Reflection> reflections_of(std::size_t nodes, const std::array<std::vector<NodeId>, 3>& images) {
+  std::vector<Mirror::Reflection> all = {{Vec3::Ones(), {}}};
+  for (std::size_t n = 0; n < nodes; ++n) all.front().nodes.emplace_back(n);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (images[axis].empty()) continue;
+    for (std::size_t i = 0, known = all.size(); i < known; ++i) {
+      Mirror::Reflection further = all[i];
+      further.signs[axis] = -1;
+      for (NodeId& node : further.nodes) node = images[axis][node.index()];
+      all.push_back(std::move(further));
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
 TissueChange keep_only(Tissue& tissue, const CellSet& cells) {
   TissueChange change = no_change(tissue);
   std::erase_if(change.origin, [&](CellId cell) { return !cells[cell.index()]; });
@@ -133,6 +153,7 @@ MirroredSide side_of(const Tissue& whole, const std::array<bool, 3>& axes) {
   for (std::size_t n = 0; n < whole.node_count(); ++n) mirror.nodes.push_back({NodeId(n), Vec3::Ones()});
   for (std::size_t c = 0; c < whole.cells.size(); ++c) mirror.cells.emplace_back(c);
   CellSet is_own(whole.cells.size(), true);
+  std::array<std::vector<NodeId>, 3> images_of_nodes;
   for (int axis = 0; axis < 3; ++axis) {
     if (!axes[axis]) continue;
     const Images images = reflecting.in(axis);
@@ -148,7 +169,9 @@ MirroredSide side_of(const Tissue& whole, const std::array<bool, 3>& axes) {
       if (std::ranges::any_of(whole.cells[c].corners, is_beyond)) is_own[c] = false;
     for (CellId& cell : mirror.cells)
       if (std::ranges::any_of(whole.cells[cell.index()].corners, is_beyond)) cell = images.cells[cell.index()];
+    images_of_nodes[axis] = images.nodes;
   }
+  mirror.reflections = reflections_of(whole.node_count(), images_of_nodes);
 
   mirror.origins = keep_only(side.tissue, is_own).origin;
   const std::vector<NodeId> node_origins = drop_unused_nodes(side.tissue);

@@ -22,9 +22,15 @@ struct Mirror {
     NodeId node;
     Vec3 signs;
   };
-  std::vector<Image> nodes;     // full tissue
-  std::vector<CellId> cells;    // full tissue
-  std::vector<CellId> origins;  // side: cells of the full tissue
+  /// A reflection of the full tissue onto itself, in one plane or in several.
+  struct Reflection {
+    Vec3 signs;
+    std::vector<NodeId> nodes;  // images of the nodes
+  };
+  std::vector<Image> nodes;             // full tissue
+  std::vector<CellId> cells;            // full tissue
+  std::vector<CellId> origins;          // side: cells of the full tissue
+  std::vector<Reflection> reflections;  // the identity, then their products: 2, 4 or 8
 
   [[nodiscard]] bool is_used() const { return !nodes.empty(); }
   [[nodiscard]] Image image(NodeId of_whole) const {

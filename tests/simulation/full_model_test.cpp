@@ -1,9 +1,13 @@
 // A side of a symmetric tissue is the whole, and a period is the endless tissue.
 #include "simulation/full_model.hpp"
 
+#include <set>
+#include <tuple>
+
 #include "core/threads.hpp"
 #include "measure/self_intersections.hpp"
 #include "mechanics/active/cortex.hpp"
+#include "mechanics/contact/self_contact.hpp"
 #include "support/models.hpp"
 #include "support/ran.hpp"
 #include "support/resumed.hpp"
@@ -200,6 +204,39 @@ TEST(FullModel, AFurrowClosesAsItDoesWithoutPlanes) {
   EXPECT_EQ(2 * mirrored.memory().state.multipliers.size(), plain.state().multipliers.size());
 
   EXPECT_EQ(*mirrored.measures()["contact_pairs"], *plain.measures()["contact_pairs"]);
+}
+
+// Where pairs are apart: those that overlap depend on what was known of them.
+TEST(FullModel, PairsOfASideAndTheirImagesAreThoseOfTheWhole) {
+  using Found = std::tuple<bool, std::set<std::size_t>, double, double>;
+  for (const std::string& plane : planes) {
+    SCOPED_TRACE(plane);
+    Simulation mirrored(
+        load_scenario(find_scenario("furrow-slice"), {"embryo.cells=[2,20,20]", "time.end_min=15", plane}));
+    ASSERT_EQ(mirrored.run(), RunStatus::end_time) << mirrored.failure();
+    const auto law = std::ranges::find_if(mirrored.model().laws, [](const auto& one) { return one->self_contact(); });
+    const auto l = static_cast<std::size_t>(law - mirrored.model().laws.begin());
+    const auto apart = [](std::span<const ContactPair> pairs) {
+      std::vector<Found> found;
+      for (const ContactPair& pair : pairs) {
+        if (pair.first_gap < 0.1) continue;
+        std::set<std::size_t> nodes;
+        for (const NodeId node : pair.p.all_nodes()) nodes.insert(node.index());
+        found.emplace_back(pair.is_of_edges(), nodes, pair.first_gap, pair.area);
+      }
+      std::ranges::sort(found);
+      return found;
+    };
+    const std::vector<Found> implied = apart(SelfContact::pairs_of(mirrored.state().internals[l])),
+                             searched = apart((*law)->self_contact()->pairs(mirrored.state().positions));
+    ASSERT_EQ(implied.size(), searched.size());
+    EXPECT_GT(implied.size(), 100U);
+    for (std::size_t i = 0; i < implied.size(); ++i) {
+      EXPECT_EQ(std::get<1>(implied[i]), std::get<1>(searched[i]));
+      EXPECT_NEAR(std::get<2>(implied[i]), std::get<2>(searched[i]), 1e-9);
+      EXPECT_NEAR(std::get<3>(implied[i]), std::get<3>(searched[i]), 1e-9);
+    }
+  }
 }
 
 TEST(FullModel, AFurrowBetweenTwoPlanesIsThatOfTheWhole) {

@@ -6,6 +6,8 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "mechanics/contact/nonconforming_edges.hpp"
 
@@ -18,10 +20,7 @@ Vec3 area_vector(const std::array<NodeId, 4>& facet, std::span<const Vec3> x) {
   return facet_area_vector({x[facet[0].index()], x[facet[1].index()], x[facet[2].index()], x[facet[3].index()]});
 }
 
-struct Triangle {
-  std::array<Vec3, 3> corners;
-  Vec3 area;  // twice its area vector
-};
+using Triangle = std::array<Vec3, 3>;
 
 // Four a facet, from its edges to the mean of its corners.
 std::vector<Triangle> triangles_of(const std::vector<std::array<NodeId, 4>>& facets, std::span<const Vec3> x) {
@@ -30,12 +29,18 @@ std::vector<Triangle> triangles_of(const std::vector<std::array<NodeId, 4>>& fac
   for (const auto& facet : facets) {
     Vec3 middle = Vec3::Zero();
     for (const NodeId node : facet) middle += x[node.index()] / 4;
-    for (std::size_t edge = 0; edge < 4; ++edge) {
-      const Vec3 &a = x[facet[edge].index()], &b = x[facet[(edge + 1) % 4].index()];
-      triangles.push_back({{a, b, middle}, (b - a).cross(middle - a)});
-    }
+    for (std::size_t edge = 0; edge < 4; ++edge)
+      triangles.push_back({x[facet[edge].index()], x[facet[(edge + 1) % 4].index()], middle});
   }
   return triangles;
+}
+
+// An internal state is the revision of the pattern, then the numbers of pairs.
+std::vector<double> numbers_of(int revision, const std::vector<Pair>& pairs) {
+  std::vector<double> numbers = {static_cast<double>(revision)};
+  const auto* of_pairs = reinterpret_cast<const double*>(pairs.data());
+  numbers.insert(numbers.end(), of_pairs, of_pairs + numbers_of_pair * pairs.size());
+  return numbers;
 }
 
 bool have_common_node(std::span<const KeptNode> some, std::span<const NodeId> others) {
@@ -94,6 +99,7 @@ struct SelfContact::Surface {
   Vectors normals;          // of nodes, by the area vectors of their facets
   Vectors outward;          // of nodes on the rim of an open surface: the way out of it; else zero
   std::vector<Triangle> triangles;
+  Vectors areas;        // twice the area vectors of triangles: most are only asked where they look
   const BoxGrid& grid;  // of the facets
 
   Surface(const SelfContact& law, std::span<const Vec3> positions)
@@ -102,6 +108,8 @@ struct SelfContact::Surface {
         outward(x.size(), Vec3::Zero()),
         triangles(triangles_of(law.facets_, x)),
         grid(law.grid_of(x)) {
+    areas.reserve(triangles.size());
+    for (const auto& [a, b, middle] : triangles) areas.push_back((b - a).cross(middle - a));
     for (const auto& facet : law.facets_) {
       const Vec3 area = area_vector(facet, x);
       for (const NodeId node : facet) normals[node.index()] += area;
@@ -138,8 +146,8 @@ bool SelfContact::is_nearest_about(const SurfacePlace& q, const Vec3& place, con
   };
   for (const std::size_t f : surface.grid.near(place)) {
     if (!is_about(facets_[f])) continue;
-    for (const auto& [corners, area] : std::span(surface.triangles).subspan(4 * f, 4))
-      if (closest_on_triangle(place, corners[0], corners[1], corners[2]).squared_distance < limit) return false;
+    for (const auto& [a, b, c] : std::span(surface.triangles).subspan(4 * f, 4))
+      if (closest_on_triangle(place, a, b, c).squared_distance < limit) return false;
   }
   return true;
 }
@@ -152,18 +160,20 @@ std::vector<SelfContact::Touch> SelfContact::touches_of(std::span<const Pair> pa
 
 std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Touch> known, const Surface& surface,
                                          const Pair* first) const {
-  const auto& [x, normals, outward, triangles, grid] = surface;
+  const auto& [x, normals, outward, triangles, areas, grid] = surface;
   const SurfacePlace& point = points_[p].place;
   const Vec3 place = point.at(x), facing = point.at(normals).normalized();
   const double within = first ? reach_of_second() : rule_.search;
   double nearest2 = within * within;
   std::optional<Pair> best;
+  const auto is_facing = [&](const Vec3& area) { return facing.dot(area) < 0; };
   for (const std::size_t f : grid.near(place)) {
+    if (std::ranges::none_of(std::span(areas).subspan(4 * f, 4), is_facing)) continue;  // nearly all of them
     if (std::ranges::binary_search(neighbours_[p], f)) continue;
     if (first && have_common_node(first->q.all_nodes(), facets_[f])) continue;
     for (std::size_t t = 4 * f; t < 4 * f + 4; ++t) {
-      if (facing.dot(triangles[t].area) >= 0) continue;  // they look the same way
-      const auto& [a, b, c] = triangles[t].corners;
+      if (!is_facing(areas[t])) continue;
+      const auto& [a, b, c] = triangles[t];
       const auto [of_corners, distance2] = closest_on_triangle(place, a, b, c);
       if (distance2 >= nearest2) continue;
       SurfacePlace q(facets_[f], 4);
@@ -177,7 +187,7 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Touch> k
       Pair found{static_cast<double>(p), Pair::no_segment, point, q, outside.normalized(), points_[p].area};
       const Vec3 apart = found.apart(x);
       if (std::ranges::all_of(of_corners, [](double weight) { return weight > 0; }))
-        found.normal = triangles[t].area.normalized();
+        found.normal = areas[t].normalized();
       else if (apart.norm() > 1e-3 * rule_.distance)
         found.normal = (apart.dot(outside) < 0 ? -apart : apart).normalized();
       // Tips of two ridges that face the same way may touch; then each is the nearest place of the other.
@@ -239,10 +249,8 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<
   for (const Pair& pair : pairs)
     for (const SurfacePlace* place : {&pair.p, &pair.q})
       for (const NodeId node : place->all_nodes()) is_searched[mirror_.image(node).node.index()] = 1;
-  Vectors triangle_areas;
-  for (const Triangle& triangle : surface.triangles) triangle_areas.push_back(triangle.area);
   const std::vector<Pair> of_edges =
-      edges_.find({surface.x, triangle_areas}, rule_.distance, mirror_, before, is_searched);
+      edges_.find({surface.x, surface.areas}, rule_.distance, mirror_, before, is_searched);
   pairs.insert(pairs.end(), of_edges.begin(), of_edges.end());
   return pairs;
 }
@@ -252,16 +260,45 @@ std::span<const Pair> SelfContact::pairs_of(std::span<const double> internal) {
   return {reinterpret_cast<const Pair*>(internal.data() + 1), (internal.size() - 1) / numbers_of_pair};
 }
 
-// An internal state is the revision of the pattern, then the numbers of pairs.
 std::vector<double> SelfContact::packed(const std::vector<Pair>& pairs, std::span<const double> before) const {
-  std::vector<double> numbers = {static_cast<double>(groups_revision(before))};
-  const auto* of_pairs = reinterpret_cast<const double*>(pairs.data());
-  numbers.insert(numbers.end(), of_pairs, of_pairs + numbers_of_pair * pairs.size());
+  std::vector<double> numbers = numbers_of(groups_revision(before), pairs);
   NodeGroups joined, joined_before;
   add_touching(numbers, joined);
   add_touching(before, joined_before);
   if (joined != joined_before) ++numbers.front();
   return numbers;
+}
+
+std::optional<std::vector<double>> SelfContact::internal_of_whole(std::span<const double> of_side) const {
+  // A point on a plane is its own image, and a pair of edges across it may be the image of another: areas add up.
+  using Nodes = std::array<NodeId, 4>;
+  const auto nodes_of = [](const SurfacePlace& place) {
+    Nodes nodes;
+    std::ranges::copy(place.nodes, nodes.begin());
+    std::ranges::sort(nodes);
+    return nodes;
+  };
+  std::map<std::tuple<bool, Nodes, Nodes>, std::size_t> known;
+  std::vector<Pair> pairs;
+  const Pair* before = nullptr;
+  for (const Pair& pair : pairs_of(of_side)) {
+    const bool is_second = !pair.is_of_edges() && before != nullptr && before->first == pair.first;
+    before = &pair;
+    for (const auto& [signs, nodes] : mirror_.reflections) {
+      Pair image = pair;
+      image.normal = signs.cwiseProduct(pair.normal);
+      for (SurfacePlace* place : {&image.p, &image.q})
+        for (int i = 0, count = place->count(); i < count; ++i) place->nodes[i] = nodes[place->nodes[i].index()];
+      Nodes of_p = nodes_of(image.p), of_q = pair.is_of_edges() ? nodes_of(image.q) : Nodes();
+      if (pair.is_of_edges() && of_q < of_p) std::swap(of_p, of_q);
+      const auto [place, is_new] = known.try_emplace({is_second, of_p, of_q}, pairs.size());
+      if (is_new)
+        pairs.push_back(image);
+      else
+        pairs[place->second].area += pair.area;
+    }
+  }
+  return numbers_of(0, pairs);
 }
 
 double SelfContact::energy(const Step& step) const {

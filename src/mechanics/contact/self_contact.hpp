@@ -65,6 +65,8 @@ class SelfContact final : public Law, public LawDerivatives, public InternalChan
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override {
     return packed(pairs(step.positions, step.internal), step.internal);
   }
+  /// Return the pairs and their images, as read by measures: `first` and `second` are those of the side.
+  [[nodiscard]] std::optional<std::vector<double>> internal_of_whole(std::span<const double> of_side) const override;
   [[nodiscard]] bool accepts(std::span<const double> internal, const Tissue& /*tissue*/) const override {
     return internal.empty() || internal.size() % numbers_of_pair == 1;
   }
