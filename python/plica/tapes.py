@@ -20,6 +20,8 @@ __all__ = ["GradientCheck", "Tape", "check_gradient", "record"]
 Array = NDArray[np.float64]
 Loss = Callable[[Array], tuple[float, ArrayLike]]
 KEY_CHANGE = 1e-4  # of a key on each side, relative
+CHECK_CHANGES = (1e-4, 1e-5, 1e-6, 1e-7)  # tried by check_gradient
+GOOD = 1e-6  # relative agreement that needs no further change
 
 
 def record(
@@ -323,20 +325,29 @@ class GradientCheck:
         Key, or direction in the strengths of cells.
     gradient, difference : float
         The derivative, and the central difference.
+    change : float
+        Relative change of the key, or change of factors, on each side.
+    uncertainty : float
+        Relative difference to the central difference of another change; NaN if one change sufficed. Where it is large, the outcome is
+        strongly curved or jumps, and no derivative can be checked.
     error : float
-        Their relative difference.
+        Relative difference of derivative and difference.
     """
 
     of: str
     gradient: float
     difference: float
+    change: float
+    uncertainty: float
 
     @property
     def error(self) -> float:
         return abs(self.gradient - self.difference) / max(abs(self.difference), np.finfo(float).tiny)
 
     def __repr__(self) -> str:
-        return f"GradientCheck({self.of}: {self.gradient:.9g}, difference {self.difference:.9g}, error {self.error:.1e})"
+        doubt = "" if math.isnan(self.uncertainty) else f" ± {self.uncertainty:.1e}"
+        return (f"GradientCheck({self.of}: {self.gradient:.9g}, difference {self.difference:.9g} by changes of {self.change:.0e}, "
+                f"error {self.error:.1e}{doubt})")
 
 
 def check_gradient(
@@ -346,7 +357,7 @@ def check_gradient(
     of: Union[str, Iterable[str]],
     by: Optional[str] = None,
     at_min: Union[None, float, Iterable[float]] = None,
-    change: float = 1e-4,
+    change: Optional[float] = None,
 ) -> list[GradientCheck]:
     """Compare a gradient with central differences of runs through the same steps.
 
@@ -358,8 +369,10 @@ def check_gradient(
         As for `Tape.gradient`.
     of, by, at_min
         As for `Tape.gradient`.
-    change : float
-        Relative change of keys, and change of factors on strengths, on each side.
+    change : float, optional
+        Relative change of keys, and change of factors on strengths, on each side. By default 1e-4, and smaller ones where the
+        outcome is too curved for it: near a snap or in contact. Of these, the change counts whose difference differs least from that
+        of the change before.
 
     Returns
     -------
@@ -373,9 +386,9 @@ def check_gradient(
 
     Notes
     -----
-    It takes two runs per comparison and one more, with tight tolerances.
+    It takes two to eight runs per comparison and one more, with tight tolerances.
     """
-    part = number_from(change, 0, "change", "a number above 0", above=True)
+    changes = CHECK_CHANGES if change is None else (number_from(change, 0, "change", "a number above 0", above=True),)
     base = Tape(tape._scenario, tape._core.replayed(tape._scenario._ready, tape._strengths), tape._strengths)
     slopes = np.atleast_1d(base.gradient(outcome, of=of, by=by, at_min=at_min, tolerance=1e-11))
 
@@ -383,20 +396,33 @@ def check_gradient(
         return Tape(scenario, tape._core.replayed(scenario._ready, strengths), strengths).value(outcome, at_min=at_min)
 
     if by is None:
-        found = []
-        for key, slope in zip([of] if isinstance(of, str) else texts_of(of, "of"), slopes):
-            values = [value(base._changed(key, sign * part), tape._strengths) for sign in (1, -1)]
-            found.append(GradientCheck(key, float(slope), (values[0] - values[1]) / (2 * part * float(base._scenario[key]))))
-        return found
+        keys = [of] if isinstance(of, str) else texts_of(of, "of")
+        return [_checked(key, float(slope), changes, lambda part, key=key: value(base._changed(key, part), tape._strengths),
+                         float(base._scenario[key]))
+                for key, slope in zip(keys, slopes)]
     law = text_of(of, "of")
     at = np.array(tape._strengths.get(law, np.ones(len(slopes))))
     largest = int(np.argmax(np.abs(slopes)))
     directions = {"a random direction": np.random.default_rng(0).uniform(0, 1, len(slopes)), f"cell {largest}": np.eye(len(slopes))[largest]}
-    found = []
-    for name, direction in directions.items():
-        values = [value(base._scenario, {**tape._strengths, law: (at + sign * part * direction).tolist()}) for sign in (1, -1)]
-        found.append(GradientCheck(f"{law}, {name}", float(direction @ slopes), (values[0] - values[1]) / (2 * part)))
-    return found
+    return [_checked(f"{law}, {name}", float(direction @ slopes), changes, lambda part, direction=direction: value(
+                base._scenario, {**tape._strengths, law: (at + part * direction).tolist()}), 1.0)
+            for name, direction in directions.items()]
+
+
+def _checked(of: str, slope: float, changes: Iterable[float], value_at: Callable[[float], float], unit: float) -> GradientCheck:
+    """Compare a derivative with differences of smaller and smaller changes, until one agrees or two differences do."""
+    best: Optional[GradientCheck] = None
+    last = math.nan
+    for part in changes:
+        difference = (value_at(part) - value_at(-part)) / (2 * part * unit)
+        found = GradientCheck(of, slope, difference, part, abs(difference - last) / max(abs(difference), np.finfo(float).tiny))
+        if best is None or math.isnan(best.uncertainty) or found.uncertainty < best.uncertainty:
+            best = found
+        if found.error < GOOD or found.uncertainty < GOOD:
+            return found
+        last = difference
+    assert best is not None
+    return best
 
 
 def _times(at_min: Union[float, Iterable[float]]) -> list[float]:

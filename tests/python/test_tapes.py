@@ -2,6 +2,7 @@
 import numpy as np
 import plica
 import pytest
+from plica.tapes import CHECK_CHANGES, _checked
 from scipy.optimize import minimize
 
 BLOCK = """
@@ -70,6 +71,20 @@ def test_outcomes_of_the_furrow_agree_with_differences():
     for outcome in ["furrow_depth_um", "vml_apical_area_ratio"]:
         [check] = plica.check_gradient(tape, outcome, of="contraction.apical.stiffness_nN_per_um")
         assert check.error < 1e-6, check
+
+
+@pytest.mark.parametrize("slope, value_at, change, error, uncertainty", [
+    (1, lambda part: np.sin(2000 * part) / 2000, 1e-6, 1e-6, 1e-4),           # curved: right at the third change
+    (1.01, lambda part: np.sin(2000 * part) / 2000, 1e-7, 0.0101, 1e-6),      # wrong slope: two differences agree
+    (1, lambda part: part, 1e-4, 1e-12, np.nan),                              # right at once
+    (1, lambda part: part + 1e-4 * np.sign(part), 1e-5, 1, 1),                # a jump: no difference agrees with another
+])
+def test_a_check_finds_the_change_that_an_outcome_allows(slope, value_at, change, error, uncertainty):
+    check = _checked("key", slope, CHECK_CHANGES, value_at, 1.0)
+    assert check.change == change or uncertainty == 1
+    assert 0.5 * error < check.error <= error or error < 1e-5 and check.error <= error
+    assert np.isnan(uncertainty) and np.isnan(check.uncertainty) or 0.4 * uncertainty < check.uncertainty <= uncertainty
+    assert f"{check.change:.0e}" in repr(check) and ("±" in repr(check)) != np.isnan(uncertainty)
 
 
 def test_a_function_of_several_times(tape):
