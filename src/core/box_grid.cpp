@@ -5,19 +5,6 @@
 #include <utility>
 
 namespace plica {
-namespace {
-
-using Cube = std::array<std::int64_t, 3>;
-
-template <class Take>
-void for_cubes(const Cube& from, const Cube& to, const Take& take) {
-  for (std::int64_t i = from[0]; i <= to[0]; ++i)
-    for (std::int64_t j = from[1]; j <= to[1]; ++j)
-      for (std::int64_t k = from[2]; k <= to[2]; ++k) take(Cube{i, j, k});
-}
-
-}  // namespace
-
 Box box_of(std::span<const Vec3> points) {
   Box box{points[0], points[0]};
   for (const Vec3& point : points.subspan(1)) box.take(point);
@@ -64,25 +51,6 @@ std::span<const std::uint32_t> BoxGrid::near(const Vec3& place) const {
   if (slots_.empty()) return {};
   const Slot& there = slots_[slot(key(cube(place)))];
   return std::span(numbers_).subspan(there.begin, there.end - there.begin);
-}
-
-void BoxGrid::find_overlapping(const Box& box, std::vector<std::uint32_t>& found, std::size_t first) const {
-  found.clear();
-  if (slots_.empty()) return;
-  const Cube from = cube(box.low);
-  for_cubes(from, cube(box.high), [&](const Cube& cube) {
-    const Slot& there = slots_[slot(key(cube))];
-    for (std::uint32_t n = there.end; n > there.begin && numbers_[n - 1] >= first; --n) {
-      const std::uint32_t b = numbers_[n - 1];
-      // Two boxes are found in the first cube that they have in common.
-      const Cube& its = first_cubes_[b];
-      if (std::max(its[0], from[0]) != cube[0] || std::max(its[1], from[1]) != cube[1] ||
-          std::max(its[2], from[2]) != cube[2])
-        continue;
-      if (boxes_[b].overlaps(box)) found.push_back(b);
-    }
-  });
-  std::ranges::sort(found);
 }
 
 BoxGrid::Cube BoxGrid::cube(const Vec3& place) const {

@@ -103,8 +103,6 @@ class Search {
   [[nodiscard]] double reach() const { return 4 * distance_; }
 
   [[nodiscard]] std::optional<ContactPair> pair_of(const Placed& a, const Placed& b) const {
-    constexpr double rounded = -1e-9;  // of a cosine: what is square to each other on one side is so on its image
-    if (a.outward.dot(b.outward) > rounded) return std::nullopt;  // they look the same way
     const Segment &of_a = segments_[a.segment], &of_b = segments_[b.segment];
     if (of_a.area == 0 && of_b.area == 0) return std::nullopt;  // images: a pair of the side's stands for them
     const std::optional<PlacesOnSegments> places = nearest_inside(a.from, a.to, b.from, b.to);
@@ -232,12 +230,15 @@ std::vector<ContactPair> EdgePairs::find(const Surface& surface, double distance
   double longest = 0;
   for (const Placed& one : all) longest = std::max(longest, (one.to - one.from).norm());
   std::vector<Box> boxes;
-  for (const Placed& one : all) boxes.push_back(one.box);
+  Vectors outward;  // apart from the rest: most segments are only asked where they look
+  for (const Placed& one : all) boxes.push_back(one.box), outward.push_back(one.outward);
   const BoxGrid grid(std::max(search.reach(), 0.5 * longest), std::move(boxes));
   std::vector<ContactPair> pairs;
   std::vector<std::uint32_t> candidates;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    grid.find_overlapping(all[i].box.widened(search.reach()), candidates, i + 1);
+    constexpr double rounded = -1e-9;  // of a cosine: what is square to each other on one side is so on its image
+    const auto is_facing = [&](std::uint32_t k) { return all[i].outward.dot(outward[k]) <= rounded; };
+    grid.find_overlapping(all[i].box.widened(search.reach()), candidates, i + 1, is_facing);
     for (const std::uint32_t k : candidates)
       if (const std::optional<ContactPair> pair = search.pair_of(all[i], all[k])) pairs.push_back(*pair);
   }
