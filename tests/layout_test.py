@@ -21,7 +21,7 @@ MOST_LINES = 500
 NOT_A_LAW = {"law", "derivatives", "internal_change", "constraint", "obstacle", "model", "program", "turning_elements", "cell_pattern", "reaction", "signal_parts", "shape_activation", "wall_factors", "fibres", "local_energy",
              "hexahedron_stiffness", "element_values", "contact_pair", "edge_pairs", "nonconforming_edges", "model_memory"}
 MEASURES_MARK = "<!-- Below: what plica reference --measures prints. -->\n"
-UNIT_AT_END = re.compile(r"_(um|um2|um3|s|um_per_s|nN|nN_um|deg|Pa|ratio|error)$")
+UNIT_AT_END = re.compile(r"_(um|um2|um3|s|um_per_s|per_um|nN|nN_um|deg|Pa|ratio|error)$")
 MARKDOWN_LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
@@ -164,7 +164,7 @@ def check_measures():
 def check_units():
     """Every column ends with its unit, ratio or error, or is among the pure numbers that docs/reference/measures.md lists."""
     page = root / "docs/reference/measures.md"
-    pure = set(re.findall(r"`(\w+)`", page.read_text(encoding="utf-8").partition("## Speeds")[0].
+    pure = set(re.findall(r"`(\w+)`", page.read_text(encoding="utf-8").partition("## Monitors")[0].
                           partition("pure numbers:\n")[2]))
     columns, quantities = printed("reference", "--measures").split("### Quantities of monitors")
     names = set(re.findall(r"^\| `(\w+)`", columns, re.MULTILINE))

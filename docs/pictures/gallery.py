@@ -323,18 +323,25 @@ def endless():
     write(figure, "endless")
 
 
-def sphere():
-    """The same cells and forces on a pill and on a sphere, both cut across at equilibrium."""
-    figure, axes = new()
-    for number, name in enumerate(("drosophila", "xenopus")):
-        run = result(name, name)
-        frame, rest = run.frames[-1], run.frames[0]
-        box = ((185, 262, 380, 300), (590, 262, 380, 300 * 0.907))[number]
-        scale = draw_half(axes, frame, area_colours(frame), VIEW, SUN, 0.01, box, rest, 2.2)
-        label(axes, (30 + 400 * number, 450), ("pill", "sphere")[number], size=LETTERS, weight="bold", ha="left")
-    area_bar(axes, 480, 52)
-    bar(axes, 60, 48, 100, scale)
-    write(figure, "sphere")
+def directions():
+    """A patch that pulls evenly, along fibres, and by a cable around it."""
+    path = scenario_of_page("how-to/direction.md", "patch")
+    even, fibres, cable = {"weakest": 0.999, "nN": 0}, {"weakest": 0, "nN": 0}, {"weakest": 0, "nN": 10}
+    figure, axes = new(860, 400)
+    camera = Camera(back=(0, 0, 1), up=(0, 1, 0))
+    for number, (name, one) in enumerate((("even", even), ("fibres", fibres), ("cable", cable))):
+        run = result(f"direction-{name}", path, cortex__apical__direction__weakest=one["weakest"],
+                     cortex__apical__tension_mN_per_m=0 if name == "cable" else 1, contraction__cable__preload_nN=one["nN"])
+        apical = run.frames[-1].polygons("apical")
+        middle = (np.abs(apical.centres[:, 0]) < 44) & (np.abs(apical.centres[:, 1]) < 36)
+        colours = AREA(Normalize(0, 2)(apical.cell_data["apical_area_ratio"]))[:, :3]
+        shown = [apical.points[face] for face, inside in zip(apical.faces, middle) if inside]
+        x = 150 + 280 * number
+        draw_outside(axes, shown, colours[middle], camera, (0, 0, 1), width=0.8, place=at_place((x, 225), 2.7))
+        label(axes, (x, 375), name, size=LETTERS, weight="bold")
+    colour_bar(axes, 560, 40, AREA, 0, 2, "apical area / reference", width=260, ticks=(0, 1, 2))
+    bar(axes, 60, 54, 20, 2.7)
+    write(figure, "directions", 224, 900)
 
 
 def ablation():
@@ -565,7 +572,7 @@ def readme():
         write(names["figure"], "readme", 64)
 
 
-CARDS = {one.__name__: one for one in (closing, measured, living, deep, twist, wing_disc, growing, wave, endless, sphere, ablation, light, division, feedback, labels, phases, report, doors, readme)}
+CARDS = {one.__name__: one for one in (closing, measured, living, deep, twist, wing_disc, growing, wave, directions, endless, ablation, light, division, feedback, labels, phases, report, doors, readme)}
 
 if __name__ == "__main__":
     for card in sys.argv[2:] or CARDS:

@@ -10,6 +10,7 @@
 #include "measure/cells.hpp"
 #include "measure/cross_section.hpp"
 #include "measure/energy_norm.hpp"
+#include "measure/region_shape.hpp"
 #include "mechanics/energy.hpp"
 #include "tissue/mirror.hpp"
 
@@ -174,6 +175,19 @@ std::vector<double> inward_displacements(const Monitor& monitor, const Moment& m
   return values;
 }
 
+std::vector<double> depths(const Monitor& monitor, const Moment& moment) {
+  const Tissue& tissue = moment.model.tissue;
+  return depths_below_border_um(tissue, tissue.regions.at(monitor.region), monitored_cells(monitor, tissue),
+                                moment.state.positions);
+}
+
+std::vector<double> curvatures(const Monitor& monitor, const Moment& moment) {
+  const Tissue& tissue = moment.model.tissue;
+  const auto curvature = curvature_per_um(tissue, monitor.face.value_or(CellSide::apical),
+                                          tissue.regions.at(monitor.region), monitor.axis, moment.state.positions);
+  return curvature ? std::vector<double>{*curvature} : std::vector<double>{};
+}
+
 std::vector<double> volumes(const Monitor& monitor, const Moment& moment) {
   return at_cells(monitor, moment, moment.model.volumes.volumes(moment.state.positions));
 }
@@ -205,7 +219,7 @@ using Of = Quantity::Of;
 using Reference = Quantity::Reference;
 constexpr auto may = Quantity::Axis::may_have, must = Quantity::Axis::must_have, no_axis = Quantity::Axis::none;
 
-constexpr std::array<Quantity, 18> table = {{
+constexpr std::array<Quantity, 20> table = {{
     {"position", "um", Of::node, positions, "Coordinate along `axis`.", must},
     {"displacement", "um", Of::node, displacements, "Displacement from the reference state: norm, or component.", may},
     {"speed", "um_per_s", Of::node, velocities,
@@ -237,6 +251,13 @@ constexpr std::array<Quantity, 18> table = {{
      "corners."},
     {"inward_displacement", "um", Of::side, inward_displacements,
      "Displacement of the mean apical corner against the outward reference normal."},
+    {"depth", "um", Of::side, depths,
+     "Depth of the mean apical corner below those of the cells around the region (nearest ones, by 1/distance⁴), along "
+     "the reference normal; 0 in the reference state."},
+    {"curvature", "per_um", Of::region, curvatures,
+     "Curvature of the region's apical surface, or basal with `face`, in its middle, of the quadric nearest to its "
+     "nodes; positive if it bulges outward. Mean curvature, or that along `axis`, projected into the surface.",
+     may},
     {"kinetic_energy", "nN_um", Of::region, kinetic_energy_values,
      "$\\tfrac12\\sum m v^2$ with lumped masses; requires a density."},
     {"time", "s", Of::region, simulated_time, "Simulated time; for stop criteria."},

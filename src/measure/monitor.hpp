@@ -31,7 +31,7 @@ struct Quantity {
   Reference reference = Reference::none;
 
   /// Whether `face` selects one side of the cells.
-  [[nodiscard]] bool has_face() const { return of == Of::node || name == "area"; }
+  [[nodiscard]] bool has_face() const { return of == Of::node || name == "area" || name == "curvature"; }
 };
 
 std::span<const Quantity> quantities();

@@ -286,7 +286,7 @@ void advise_on_effects(const Scenario& scenario, const Model& model, Messages& o
                scenario.time.end_s);
   advise_on_ablations(scenario, model.tissue, out);
   for (const auto& [name, contraction] : scenario.contractions)
-    if (contraction.stiffness_nN_per_um > 0 || contraction.preload_nN > 0)
+    if (contraction.border.empty() && (contraction.stiffness_nN_per_um > 0 || contraction.preload_nN > 0))
       out.note(
           "contraction.{}: every edge carries a spring, so a region of smaller cells contracts more strongly; use "
           "tension_mN_per_m for a tension independent of cell size",

@@ -168,6 +168,7 @@ struct RegionElasticityInput : ActingInput {  // profile: factor on the modulus
 };
 
 struct ContractionInput : ActingInput {
+  std::string border;  // region on the other side of a cable; empty: all edges of the cells
   double stiffness_nN_per_um = 0;
   double along_ratio = 1;
   double across_ratio = 1;
@@ -181,23 +182,24 @@ struct ContractionInput : ActingInput {
 /// Shape measure (ShapeMeasure) or signal that a cell reads; both empty: none.
 struct ActivationInput {
   std::string measure, signal;
+  std::string of = "cell";  // cell | neighbours: whose
 
   [[nodiscard]] bool is_used() const { return !measure.empty() || !signal.empty(); }
 };
 
-/// Cell-autonomous activation: a threshold on the cell's own shape or signal starts its programs.
+/// Shape-dependent activation: a threshold on a shape or signal starts the programs of a cell.
 struct TriggerInput : ActivationInput {
   std::optional<double> below, above;  // one of them
 };
 
-/// Cell-autonomous tension: a factor that follows the cell's own shape or signal.
+/// Shape-dependent tension: a factor that follows a shape or signal.
 struct FollowInput : ActivationInput {
   std::optional<double> from, to;
 };
 
 /// Tension along a direction: lateral faces have a factor by the angle between their normal and an axis, others fibres.
 struct DirectionInput {
-  std::string axis;   // along | across; empty: none
+  std::string axis;   // along | across | long-axis | stretch; empty: none
   std::string array;  // of angles to it, degrees; empty: 0
   double strongest = 1, weakest = 1;
 };

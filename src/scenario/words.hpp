@@ -12,6 +12,7 @@
 #include "measure/monitor.hpp"
 #include "measure/stop_rule.hpp"
 #include "mechanics/active/cell_pattern.hpp"
+#include "mechanics/active/fibres.hpp"
 #include "mechanics/active/shape_activation.hpp"
 #include "scenario/scenario.hpp"
 #include "solver/make_stepper.hpp"
@@ -127,6 +128,12 @@ inline constexpr auto shape_measures =
                                        {shape_measure_names[1], ShapeMeasure::basal_area_ratio},
                                        {shape_measure_names[2], ShapeMeasure::height_ratio},
                                        {shape_measure_names[3], ShapeMeasure::apical_stretch}});
+inline constexpr auto fibre_axes = std::to_array<Word<FibreAxis>>({{"along", FibreAxis::along},
+                                                                   {"across", FibreAxis::across},
+                                                                   {"long-axis", FibreAxis::long_axis},
+                                                                   {"stretch", FibreAxis::stretch}});
+// Whether a cell reads its neighbours.
+inline constexpr auto read_cells = std::to_array<Word<bool>>({{"cell", false}, {"neighbours", true}});
 
 // [pressure.NAME]: whether the face is apical.
 inline constexpr auto surfaces =

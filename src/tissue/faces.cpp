@@ -155,6 +155,27 @@ std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue) {
   return neighbours;
 }
 
+double wall_share(const Tissue& tissue, CellId cell, std::size_t stop) {
+  const Polygon& polygon = tissue.sheet.cells[cell.index()];
+  const auto& from = tissue.sheet.vertices[polygon.ring[stop].vertex.index()].nodes;
+  const auto& to = tissue.sheet.vertices[polygon.after(stop).vertex.index()].nodes;
+  const CellId beyond = tissue.sheet.walls[polygon.ring[stop].wall.index()].beyond(cell);
+  return share_of(tissue, {{from.front(), to.front(), to.back(), from.back()},
+                           cell,
+                           beyond.valid() ? std::optional(beyond) : std::nullopt});
+}
+
+std::vector<std::vector<CellId>> neighbours_and_images(const Tissue& tissue) {
+  std::vector<std::vector<CellId>> neighbours = wall_neighbours(tissue);
+  for (std::size_t c = 0; c < neighbours.size(); ++c) {
+    for (std::size_t i = 0; i < tissue.sheet.cells[c].ring.size(); ++i)
+      if (tissue.sheet.cells[c].ring[i].at == 0 && wall_share(tissue, CellId(c), i) < 1)
+        neighbours[c].push_back(CellId(c));
+    if (neighbours[c].empty()) neighbours[c] = {CellId(c)};
+  }
+  return neighbours;
+}
+
 std::optional<CellId> cell_between_layers(const Tissue& tissue) {
   for (std::size_t c = 0; c < tissue.cells.size(); ++c)
     if (!tissue.sheet.cells[c].has_apical || !tissue.sheet.cells[c].has_basal) return CellId(c);

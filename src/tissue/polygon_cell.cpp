@@ -4,6 +4,8 @@
 #include <limits>
 #include <map>
 
+#include "tissue/faces.hpp"
+
 namespace plica {
 namespace {
 
@@ -270,6 +272,38 @@ std::vector<std::vector<ContractileLine>> contractile_lines(const Tissue& tissue
       has_inner |= std::ranges::any_of(facets[end].nodes, [&](NodeId node) { return is_inner[node.index()]; });
     if (has_inner)
       lines[cell.index()] = net_of_face(tissue, tissue.cells[cell.index()], side, facets.subspan(begin, end - begin));
+  }
+  return lines;
+}
+
+std::vector<std::vector<ContractileLine>> border_lines(const Tissue& tissue, CellSide side, const CellSet& inside,
+                                                       const OtherSide& other) {
+  const auto way = [&](const ContractileLine& line) {
+    return Vec3(tissue.rest_positions[line.nodes[1].index()] - tissue.rest_positions[line.nodes[0].index()]);
+  };
+  std::vector<Lines> lines(tissue.cells.size());
+  for (std::size_t c = 0; c < inside.size(); ++c) {
+    if (!inside[c]) continue;
+    const Polygon& polygon = tissue.sheet.cells[c];
+    const Vec3 outward = outward_of(tissue.cells[c], tissue.rest_positions);
+    const auto is_border = [&](std::size_t stop) {
+      const CellId beyond = tissue.sheet.walls[polygon.ring[stop].wall.index()].beyond(CellId(c));
+      if (beyond.valid()) return !inside[beyond.index()] && other.cells[beyond.index()];
+      return other.has_rim && wall_share(tissue, CellId(c), stop) == 1;
+    };
+    const auto node_of = [&](const Stop& stop) {
+      const std::vector<NodeId>& nodes = tissue.sheet.vertices[stop.vertex.index()].nodes;
+      return side == CellSide::apical ? nodes.back() : nodes.front();
+    };
+    for (std::size_t stop = 0; stop < polygon.ring.size(); ++stop) {
+      if (!is_border(stop)) continue;
+      ContractileLine line;
+      line.nodes = {node_of(polygon.ring[stop]), node_of(polygon.after(stop))};
+      line.along = alignment_with_x(way(line), outward);
+      line.direction = line.along < 0.5 ? EdgeDirection::across : EdgeDirection::along;
+      line.in_series = 1 / (polygon.end_of(stop) - polygon.ring[stop].at);
+      lines[c].push_back(std::move(line));
+    }
   }
   return lines;
 }

@@ -99,4 +99,15 @@ struct ContractileLine {
 /// - on walls, the lines of element edges from base to apex, those at corners with half a share of each wall.
 std::vector<std::vector<ContractileLine>> contractile_lines(const Tissue& tissue, CellSide side);
 
+/// What is on the other side of a border of some cells: other cells of a set and, if `has_rim`, nothing.
+struct OtherSide {
+  CellSet cells;
+  bool has_rim = false;
+};
+
+/// Return the lines of cables along the apical or basal border of `inside`, by the cell inside: the parts of edges
+/// between two nodes, in series. Planes of symmetry are no border.
+std::vector<std::vector<ContractileLine>> border_lines(const Tissue& tissue, CellSide side, const CellSet& inside,
+                                                       const OtherSide& other);
+
 }  // namespace plica

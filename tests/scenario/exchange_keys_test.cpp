@@ -53,6 +53,13 @@ TEST(ExchangeKeys, SayWhatWouldBeRight) {
        "5: cortex.a.direction.array: acts on apical and basal faces only; remove it, or change faces"},
       {apical_cortex + "direction = { array = \"angle\" }",
        "4: cortex.a.direction.axis: is missing; set axis to \"along\" or \"across\""},
+      {lateral_cortex + "tension_mN_per_m = 1\ndirection = { axis = \"stretch\", weakest = 0 }",
+       "5: cortex.a.direction.axis: acts on apical and basal faces only; set axis to \"along\" or \"across\""},
+      {apical_cortex + "direction = { axis = \"long-axis\", weakest = 0, array = \"angle\" }",
+       "4: cortex.a.direction.array: conflicts with an axis of the cell; remove it, or set axis to \"along\""},
+      {apical_cortex + "stiffness_mN_per_m = 1\ndirection = { axis = \"long-axis\", weakest = 0 }",
+       "5: cortex.a.direction.axis: stiffness_mN_per_m cannot turn with the cell, which needs energy; put "
+       "stiffness_mN_per_m into another [cortex.NAME]"},
       {apical_cortex + "direction = { axis = \"along\", weakest = 1.5 }",
        "4: cortex.a.direction.weakest: 1.5 exceeds strongest; exchange both values, and turn axis"},
       {"embryo.mirror = [\"y\"]\n" + apical_cortex + "direction = { axis = \"along\", weakest = 0, array = \"angle\" }",

@@ -7,6 +7,7 @@
 namespace {
 
 const std::string cortex = "[cortex.a]\nregion = \"all\"\n";
+const std::string cable = "[contraction.a]\nregion = \"all\"\npreload_nN = 1\n";
 
 TEST(CortexKeys, SayWhatWouldBeRight) {
   const WrongScenarios cases = {
@@ -33,6 +34,9 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
       {cortex + "tension_mN_per_m = 1\ntrigger = { below = 0.3 }",
        "4: cortex.a.trigger.measure: is missing; set measure to one of: apical_area_ratio | basal_area_ratio | "
        "height_ratio | apical_stretch; or set signal"},
+      {cortex + "tension_mN_per_m = 1\nfollow = { of = \"neighbours\" }",
+       "4: cortex.a.follow.measure: is missing; set measure to one of: apical_area_ratio | basal_area_ratio | "
+       "height_ratio | apical_stretch; or set signal"},
       {cortex + "tension_mN_per_m = 1\ntrigger = { measure = \"height_ratio\" }",
        "4: cortex.a.trigger.below: is missing; set either below or above"},
       {cortex + "tension_mN_per_m = 1\nfollow = { measure = \"height_ratio\", from = 1, to = 1 }",
@@ -45,6 +49,14 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
        "5: cortex.a.trigger: conflicts with `delay`, which activates cells at prescribed times; remove one of them"},
       {cortex + "tension_mN_per_m = 1\nprofile = { full_length_um = 300 }",
        "4: cortex.a.profile.fade_um: is missing; set both full_length_um and fade_um"},
+      {cable + "border = \"all\"\nedges = \"lateral\"",
+       "5: contraction.a.edges: conflicts with `border`, which makes a cable; set edges to \"apical\" or \"basal\""},
+      {cable + "border = \"all\"\ndiagonals = true",
+       "5: contraction.a.diagonals: conflicts with `border`, which makes a cable; remove one of them"},
+      {cable + "border = \"all\"\ntension_mN_per_m = 1",
+       "5: contraction.a.tension_mN_per_m: conflicts with `border`, which makes a cable; set the tension of the cable "
+       "as preload_nN"},
+      {cable + "border = \"mesoderm\"", "4: contraction.a.border: region \"mesoderm\" does not exist; use one of: all"},
       {"[enclosed.yolk]\nvolume = \"compliant\"\n[vitelline]\ngap_um = 1",
        "1: enclosed.yolk.bulk_modulus_Pa: is missing; set bulk_modulus_Pa to a number > 0"},
       {"[enclosed.yolk]\nbulk_modulus_Pa = 10\n[vitelline]\ngap_um = 1",
@@ -249,6 +261,25 @@ TEST(InteriorKeys, WhatTheyMakeOfTheModel) {
   EXPECT_EQ(laws(neo + "relaxation_min = 6\n"), "elasticity, dilatation, contraction, drag, 768");
   EXPECT_EQ(laws(neo + "[region.one]\nids = [1]\n[elasticity.soft]\nregion = \"one\"\nrelaxation_min = 6\n"),
             "elasticity, dilatation, contraction, drag, 768");
+}
+
+TEST(CableKeys, NeedABorder) {
+  const std::string half = block_table(20, 20, 10, "2, 2, 1") + "mirror = [\"y\"]\n";
+  expect_errors(
+      {{block_table(20, 20, 10, "2, 2, 1") + "[region.one]\nids = [0]\n[region.far]\nids = [3]\n" +
+            "[contraction.a]\nregion = \"one\"\npreload_nN = 1\nborder = \"far\"",
+        "14: contraction.a.border: region \"one\" has no edge there; set it to a region beside it, or to \"all\""}},
+      model_errors);
+  expect_errors(
+      {{half + "[region.one]\nids = [0]\n[contraction.a]\nregion = \"all\"\npreload_nN = 1\nborder = \"one\"",
+        "13: contraction.a.border: region \"all\" has no edge there; set it to a region beside it, or to \"all\""}},
+      model_errors);
+  expect_errors(
+      {{half + "[region.left]\nx_um = [-100, 0]\n[region.one]\nids = [1]\n[contraction.a]\nregion = \"left\"\n"
+               "preload_nN = 1\nborder = \"one\"",
+        "15: contraction.a.border: region \"one\" is not symmetric; use a symmetric region, or remove "
+        "embryo.mirror"}},
+      side_errors);
 }
 
 // Bending of single neo-Hookean elements is too soft; warned of if it matters.

@@ -247,7 +247,8 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   }
   expect_words("cortex.*", "trigger.measure", words::shape_measures);
   expect_words("cortex.*", "follow.measure", words::shape_measures);
-  expect_words("cortex.*", "direction.axis", words::delay_axes);
+  for (const char* key : {"trigger.of", "follow.of"}) expect_words("cortex.*", key, words::read_cells);
+  expect_words("cortex.*", "direction.axis", words::fibre_axes);
   expect_words("enclosed.*", "volume", words::enclosed_states);
   expect_words("self_contact", "surface", words::contact_surfaces);
   expect_words("hold.*", "directions", words::axes);

@@ -208,7 +208,7 @@ TEST(MonitorRules, EveryErrorIsOneLineWithARemedy) {
       {"[monitor.a]",
        "1: monitor.a.quantity: is missing; set quantity to one of: position | displacement | speed | velocity | "
        "deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | apical_elongation | "
-       "pressure | apical_load | inward_displacement | kinetic_energy | time | wall"},
+       "pressure | apical_load | inward_displacement | depth | curvature | kinetic_energy | time | wall"},
       {"[monitor.a]\nquantity = \"speed\"\nregion = \"al\"",
        "3: monitor.a.region: region \"al\" does not exist; use \"all\" (nearest match)"},
       {"[monitor.a]\nquantity = \"position\"", "1: monitor.a.axis: is missing; set axis to \"x\", \"y\" or \"z\""},

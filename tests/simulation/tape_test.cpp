@@ -239,16 +239,33 @@ trigger = { measure = "apical_area_ratio", below = 0.985 }
                      1e-4});
 }
 
-TEST(Tape, GradientsOfCellsThatFollowTheirShapeAgreeWithDifferences) {
-  expect_gradient({pulled_block(R"([cortex.walls]
+TEST(Tape, GradientsOfCellsThatFollowShapesAgreeWithDifferences) {
+  for (const char* of : {"cell", "neighbours"})
+    expect_gradient({pulled_block(R"([cortex.walls]
 region = "all"
 faces = "lateral"
 tension_mN_per_m = 3
 follow = { measure = "apical_stretch", from = 0.99, to = 0.7 }
 )"),
+                     {fmt::format("cortex.walls.follow.of={}", of)},
+                     {{"cortex.walls.follow.from", 0.99}, {"cortex.walls.tension_mN_per_m", 3}},
+                     "cortex.walls",
+                     4,
+                     {},
+                     1e-6});
+}
+
+TEST(Tape, GradientsOfACableAgreeWithDifferences) {
+  expect_gradient({pulled_block(R"([region.part]
+x_um = [0, 100]
+[contraction.cable]
+region = "part"
+border = "all"
+preload_nN = 20
+)"),
                    {},
-                   {{"cortex.walls.follow.from", 0.99}, {"cortex.walls.tension_mN_per_m", 3}},
-                   "cortex.walls",
+                   {{"contraction.cable.preload_nN", 20}},
+                   "contraction.cable",
                    4,
                    {},
                    1e-6});
@@ -290,17 +307,18 @@ TEST(Tape, GradientsOfPolarTensionsAgreeWithDifferences) {
 }
 
 TEST(Tape, GradientsThroughSignalsAgreeWithDifferences) {
-  expect_gradient(
-      {find_scenario("wave"),
-       {"embryo.length_um=60", "embryo.width_um=20", "embryo.cell_count=60",
-        "signal.u.source={region=\"left-end\",per_min=0.1}", "cortex.apical.program={time_min=[0,0.2],activity=[0,1]}"},
-       {{"signal.u.diffusion_um2_per_min", 10},
-        {"signal.u.constants.k", 5},
-        {"signal.u.initial", 1},
-        {"cortex.apical.follow.to", 0.8},
-        {"cortex.apical.tension_mN_per_m", 8}},
-       "cortex.apical",
-       20});
+  for (const char* of : {"cell", "neighbours"})
+    expect_gradient({find_scenario("wave"),
+                     {fmt::format("cortex.apical.follow.of={}", of), "embryo.length_um=60", "embryo.width_um=20",
+                      "embryo.cell_count=60", "signal.u.source={region=\"left-end\",per_min=0.1}",
+                      "cortex.apical.program={time_min=[0,0.2],activity=[0,1]}"},
+                     {{"signal.u.diffusion_um2_per_min", 10},
+                      {"signal.u.constants.k", 5},
+                      {"signal.u.initial", 1},
+                      {"cortex.apical.follow.to", 0.8},
+                      {"cortex.apical.tension_mN_per_m", 8}},
+                     "cortex.apical",
+                     20});
 }
 
 // The furrow of the embryo of the experiments, whose floors soften as their apices have shrunk.

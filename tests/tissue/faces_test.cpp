@@ -353,4 +353,23 @@ TEST(Mirror, WhatIsNotSymmetricIsRefused) {
   EXPECT_SAYS(complaint(bent), "the mesh is not symmetric about the plane y = 0: it has a node at");
 }
 
+// Means over neighbours are those in the whole: cells that a plane touches have an image, once.
+TEST(Mirror, NeighboursAndImagesAreThoseOfTheWhole) {
+  const Tissue slice = build_slice({14, 160, 30, {2, 8, 6}, {1, 1, 1}});
+  for (const Tissue& whole : {pill(), pill({2, 1, 2}), slice})
+    for (const auto& axes : {across_y, both}) {
+      const MirroredSide side = side_of(whole, axes);
+      const auto of_whole = neighbours_and_images(whole), of_side = neighbours_and_images(side.tissue);
+      for (std::size_t c = 0; c < of_side.size(); ++c) {
+        std::vector<CellId> expected;
+        for (const CellId cell : of_whole[side.mirror.origins[c].index()])
+          expected.push_back(side.mirror.cells[cell.index()]);
+        std::ranges::sort(expected);
+        std::vector<CellId> found = of_side[c];
+        std::ranges::sort(found);
+        EXPECT_EQ(found, expected) << c;
+      }
+    }
+}
+
 }  // namespace

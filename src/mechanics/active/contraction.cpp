@@ -79,7 +79,8 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
     }
   };
   const std::vector<double> areas = areas_at_rest(tissue, rule.side);
-  const auto lines = contractile_lines(tissue, rule.side);
+  const auto lines =
+      rule.border ? border_lines(tissue, rule.side, pattern.cells, *rule.border) : contractile_lines(tissue, rule.side);
   for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
     if (!pattern.cells[c]) continue;
     const Cell& cell = tissue.cells[c];

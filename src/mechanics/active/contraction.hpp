@@ -7,6 +7,7 @@
 #include "mechanics/active/program.hpp"
 #include "mechanics/derivatives.hpp"
 #include "mechanics/law.hpp"
+#include "tissue/polygon_cell.hpp"
 #include "tissue/tissue.hpp"
 
 namespace plica {
@@ -30,14 +31,15 @@ struct Spring {
 /// Parameters of the springs. Lengths and stiffness as in [contraction.NAME] of the scenario.
 struct ContractionRule {
   CellSide side = CellSide::apical;
-  double stiffness = 0;          // nN/um
-  double along_ratio = 1;        // factor on stiffness and preload of edges along the axis
-  double across_ratio = 1;       // and across it; lateral edges have neither
-  bool diagonals = false;        // also both diagonals of the face, with the mean of both factors
-  double rest_length_ratio = 0;  // U / reference length
-  double preload = 0;            // nN
-  double damping = 0;            // nN s/um
-  double tension = 0;            // face tension, nN/um, carried by its lines over its width
+  double stiffness = 0;                  // nN/um
+  double along_ratio = 1;                // factor on stiffness and preload of edges along the axis
+  double across_ratio = 1;               // and across it; lateral edges have neither
+  bool diagonals = false;                // also both diagonals of the face, with the mean of both factors
+  double rest_length_ratio = 0;          // U / reference length
+  double preload = 0;                    // nN
+  double damping = 0;                    // nN s/um
+  double tension = 0;                    // face tension, nN/um, carried by its lines over its width
+  std::optional<OtherSide> border = {};  // a cable: only along the border of the active cells with these
 };
 
 /// Make the springs of the active cells. Two cells that share an edge have a spring each. In a cell of several

@@ -96,6 +96,21 @@ void Cortex::take_fibres(const Tissue& tissue) {
     write_fibres(rule_.fibres, face, rule_.side == CellSide::apical, gather(tissue.rest_positions, face.nodes),
                  fibres_[place / batch_size], place % batch_size);
   }
+  if (!rule_.fibres.turn()) return;
+  axes_ = CellAxes(tissue, rule_.side, rule_.fibres.axis);
+  for (const Face& face : faces_) rest_corners_.push_back(gather(tissue.rest_positions, face.nodes));
+}
+
+// Turn fibres to the axes of their cells at the beginning of a step.
+void Cortex::turn_fibres(const Step& step) const {
+  if (!rule_.fibres.turn() || std::ranges::equal(turned_at_, step.previous_positions)) return;
+  kept_ = {};
+  turned_at_.assign(step.previous_positions.begin(), step.previous_positions.end());
+  for (std::size_t place = 0; place < places(); ++place) {
+    const std::size_t f = std::min(place, faces_.size() - 1);
+    write_fibres(rule_.fibres.share, axes_.of(faces_[f].cell, turned_at_), rest_corners_[f],
+                 gather(turned_at_, faces_[f].nodes), fibres_[place / batch_size], place % batch_size);
+  }
 }
 
 void Cortex::take_rest_areas() {
@@ -158,8 +173,9 @@ double Cortex::activity_of_face(std::size_t f, const Step& step) const {
   return of_face(f, [&](CellId cell) { return activity(cell, step.end_time_s, step.internal, heights_[f]); });
 }
 
-// Compute the factors of faces before `active` reads them.
+// Compute what depends on the beginning of a step, before `areas` and `active` read it.
 void Cortex::take_factors(const Step& step) const {
+  turn_fibres(step);
   const auto& [direction, noise] = rule_.walls;
   if (!rule_.walls.is_used()) return;
   const std::span<const Vec3> positions = direction ? step.previous_positions : std::span<const Vec3>();
@@ -237,6 +253,7 @@ EnergyFlow Cortex::energy_flow(const CompletedStep& completed) const {
   const std::vector<double> internal = acting_midway(completed.motion.internal);
   Step motion = completed.motion;
   motion.internal = internal;
+  turn_fibres(completed.motion);
   take_mean_factors(completed);
   const std::vector<double> before = areas(completed.begin.positions), after = areas(completed.end.positions);
   std::vector<EnergyFlow> flows_of(faces_.size());
@@ -281,13 +298,13 @@ bool Cortex::FaceTensions::are_of(const Step& step) const {
 }
 
 Cortex::FaceTensions Cortex::face_tensions(const Step& step) const {
+  take_factors(step);
   FaceTensions faces{areas(step.positions),
                      std::vector<double>(places(), 0.0),
                      {step.positions.begin(), step.positions.end()},
                      {step.internal.begin(), step.internal.end()},
                      {step.end_time_s, step.rate_s, step.ahead}};
   faces.tensions.resize(places(), 0.0);
-  take_factors(step);
   chunks_.for_elements([&](std::size_t f) {
     const Response response = respond(f, faces.tensions[f], step, false);
     faces.tensions[f] = response.tension;

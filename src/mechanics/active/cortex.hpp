@@ -93,7 +93,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
                                                  double time_s) const override;
 
-  /// NoGradient where signals start cells, or forces jump where a cell starts.
+  /// NoGradient where signals start cells, forces jump where a cell starts, or fibres turn.
   [[nodiscard]] const LawDerivatives& derivatives() const override;
   void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
                           const BeginningGradient& gradient) const override;
@@ -165,6 +165,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] CortexRule rule_after(const TissueChange& change) const;
   [[nodiscard]] const FibreBatch* fibres() const { return fibres_.empty() ? nullptr : fibres_.data(); }
   void take_fibres(const Tissue& tissue);
+  void turn_fibres(const Step& step) const;
   static std::vector<Face> acting_faces(const Tissue& tissue, CellSide side, const CellPattern& pattern);
   class Origins;  // faces before a division that faces after it come from
   void take_rest_areas();
@@ -205,7 +206,11 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   std::vector<double> heights_;    // faces; percent of the height of their cells
   ShapeActivation activation_;
   std::vector<FaceBatch> batches_;
-  std::vector<FibreBatch> fibres_;    // empty: none
+  mutable std::vector<FibreBatch> fibres_;  // empty: none
+  // Fibres that turn with their cells: axes, corners of faces in the reference state, positions by which they are.
+  CellAxes axes_;
+  std::vector<std::array<Vec3, 4>> rest_corners_;
+  mutable Vectors turned_at_;
   std::vector<std::uint64_t> pairs_;  // faces; of their cells, if walls have noise
   mutable NoiseOfPairs noise_;
   mutable FaceTensions kept_;  // of the last iterate, for all products of its linear system; one thread at a time

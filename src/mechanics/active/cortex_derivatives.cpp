@@ -10,6 +10,8 @@ namespace plica {
 const LawDerivatives& Cortex::derivatives() const {
   if (rule_.activation.signal && activation_.starts())
     refuse_gradient("a trigger by a signal has no derivative yet; use follow");
+  if (rule_.fibres.turn())
+    refuse_gradient("fibres that turn with their cells have no derivative; set direction.axis to along or across");
   const bool jumps = (rule_.tension != 0 && rule_.program.at(0) != 0) || !rule_.program.jumps_s().empty() ||
                      !rule_.stiffness_program.jumps_s().empty();
   if (activation_.starts() && jumps)

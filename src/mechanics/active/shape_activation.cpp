@@ -5,12 +5,10 @@
 #include <cmath>
 
 #include "mechanics/law.hpp"
+#include "tissue/faces.hpp"
 
 namespace plica {
-namespace {
 
-/// The mean over a polygon of the gradient of a field that its corners carry is the sum of their values times these
-/// (by Gauss' theorem; in the plane that the polygon lies closest to).
 std::vector<Eigen::RowVector2d> mean_gradient(std::span<const Vec3> polygon) {
   const std::size_t n = polygon.size();
   Vec3 twice_area = Vec3::Zero();
@@ -24,10 +22,9 @@ std::vector<Eigen::RowVector2d> mean_gradient(std::span<const Vec3> polygon) {
   return weights;
 }
 
-}  // namespace
-
 ShapeActivation::ShapeActivation(const Tissue& tissue, const ShapeActivationRule& rule)
     : rule_(rule), at_rest_(tissue.cells.size(), 0.0) {
+  if (is_used() && rule.of_neighbours) neighbours_ = neighbours_and_images(tissue);
   if (!is_used() || rule.signal) return;
   if (rule.measure == ShapeMeasure::height_ratio) {
     for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
@@ -80,10 +77,19 @@ std::vector<double> ShapeActivation::ratios(std::span<const Vec3> positions) con
   return ratios;
 }
 
+std::vector<double> ShapeActivation::read(std::vector<double> values) const {
+  if (neighbours_.empty()) return values;
+  std::vector<double> means(values.size(), 0.0);
+  for (std::size_t c = 0; c < means.size(); ++c)
+    for (const CellId from : neighbours_[c])
+      means[c] += values[from.index()] / static_cast<double>(neighbours_[c].size());
+  return means;
+}
+
 std::vector<double> ShapeActivation::internal(std::span<const Vec3> positions, double time_s,
                                               std::span<const double> before) const {
   if (!is_used()) return {};
-  if (!rule_.signal) return next(ratios(positions), time_s, before);
+  if (!rule_.signal) return next(read(ratios(positions)), time_s, before);
   if (before.empty()) return std::vector<double>(at_rest_.size(), starts() ? not_yet : 0);
   return {before.begin(), before.end()};
 }
@@ -96,7 +102,7 @@ std::vector<double> ShapeActivation::after(const Step& step, std::span<const dou
 std::vector<double> ShapeActivation::of_signals(std::span<const CellArray> signals, double time_s,
                                                 std::span<const double> before) const {
   if (!rule_.signal) return {before.begin(), before.end()};
-  return next(signals[*rule_.signal], time_s, before);
+  return next(read(signals[*rule_.signal]), time_s, before);
 }
 
 std::vector<double> ShapeActivation::next(std::vector<double> values, double time_s,

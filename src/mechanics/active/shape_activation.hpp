@@ -1,5 +1,6 @@
-// Cell-autonomous activity: a program that starts at a threshold of area, height, stretch or a signal, or an activity
-// that follows it (docs/theory/cortex.md, "Time-prescribed and shape-dependent activity").
+// Shape-dependent activity: a program that starts at a threshold of area, height, stretch or a signal, of the cell
+// itself or of its neighbours, or an activity that follows it (docs/theory/cortex.md, "Time-prescribed and
+// shape-dependent activity").
 #pragma once
 
 #include <array>
@@ -23,7 +24,7 @@ enum class ShapeMeasure { apical_area_ratio, basal_area_ratio, height_ratio, api
 inline constexpr std::array<std::string_view, 4> shape_measure_names = {"apical_area_ratio", "basal_area_ratio",
                                                                         "height_ratio", "apical_stretch"};
 
-/// Rule by which cells start, or follow their shape or a signal. Cell numbers are those at the beginning of a step.
+/// Rule by which cells start, or follow a shape or a signal. Cell numbers are those at the beginning of a step.
 struct ShapeActivationRule {
   enum class Kind { none, starts_below, starts_above, follows };
   Kind kind = Kind::none;
@@ -31,10 +32,15 @@ struct ShapeActivationRule {
   double threshold = 1;                    // for both triggers
   double from = 1, to = 0;                 // follow: activity 0 up to `from`, 1 beyond `to`, linear between
   std::optional<std::size_t> signal = {};  // place among the model's signals, which replaces the measure
+  bool of_neighbours = false;              // their mean, instead of the cell's own value
   // Triggers: start at the crossing of the threshold, interpolated linearly within the step, not at the end of the
   // step.
   bool at_crossing = false;
 };
+
+/// Return the weights of corners by which values sum to the mean over their polygon of the gradient of a field (by
+/// Gauss' theorem; in the plane that the polygon lies closest to).
+std::vector<Eigen::RowVector2d> mean_gradient(std::span<const Vec3> polygon);
 
 /// State, one number per cell: start time (s) or `not_yet` for cells with a trigger, or progress from 0 to 1 for cells
 /// that follow.
@@ -68,7 +74,7 @@ class ShapeActivation {
   void move_to_signals(std::span<double> by_state, std::span<const CellArray> signals,
                        std::span<CellArray> by_signals) const;
 
-  /// Return the quantity of each cell.
+  /// Return the quantity of each cell itself.
   [[nodiscard]] std::vector<double> ratios(std::span<const Vec3> positions) const;
   /// Add the gradient of sum weights . ratios; cells.
   void add_ratio_gradient(std::span<const Vec3> positions, std::span<const double> weights,
@@ -80,6 +86,9 @@ class ShapeActivation {
   [[nodiscard]] std::vector<double> next(std::vector<double> values, double time_s,
                                          std::span<const double> before) const;
   [[nodiscard]] std::vector<double> sizes(std::span<const Vec3> positions) const;
+  /// Return what cells read, given the value of each; and the gradient by values from that by what is read.
+  [[nodiscard]] std::vector<double> read(std::vector<double> values) const;
+  [[nodiscard]] std::vector<double> by_values(std::vector<double> by_read) const;
 
   ShapeActivationRule rule_;
   std::vector<Facet> facets_;                               // areas: facets of that side
@@ -87,6 +96,7 @@ class ShapeActivation {
   std::vector<std::vector<NodeId>> apices_;                 // stretches: apical corners of each cell
   std::vector<std::vector<Eigen::RowVector2d>> gradients_;  // stretches: their weights for the mean gradient
   std::vector<double> at_rest_;                             // cells; 1 for stretches
+  std::vector<std::vector<CellId>> neighbours_;             // of each cell; empty: it reads itself
 };
 
 }  // namespace plica

@@ -8,11 +8,20 @@
 
 namespace plica {
 
+std::vector<double> ShapeActivation::by_values(std::vector<double> by_read) const {
+  if (neighbours_.empty()) return by_read;
+  std::vector<double> gradient(by_read.size(), 0.0);
+  for (std::size_t c = 0; c < by_read.size(); ++c)
+    for (const CellId from : neighbours_[c])
+      gradient[from.index()] += by_read[c] / static_cast<double>(neighbours_[c].size());
+  return gradient;
+}
+
 std::vector<double> ShapeActivation::after_like(const Step& step, std::span<const double> before,
                                                 std::span<const double> next) const {
   std::vector<double> state = internal(step.positions, step.end_time_s, before);
   if (!starts() || rule_.signal) return state;
-  const std::vector<double> from = ratios(step.previous_positions), to = ratios(step.positions);
+  const std::vector<double> from = read(ratios(step.previous_positions)), to = read(ratios(step.positions));
   for (std::size_t c = 0; c < state.size(); ++c) {
     state[c] = before[c];
     if (before[c] == not_yet && next[c] != not_yet)
@@ -24,17 +33,21 @@ std::vector<double> ShapeActivation::after_like(const Step& step, std::span<cons
 void ShapeActivation::move_to_signals(std::span<double> by_state, std::span<const CellArray> signals,
                                       std::span<CellArray> by_signals) const {
   if (!rule_.signal || starts()) return;
-  for (std::size_t c = 0; c < by_state.size(); ++c) {
-    const double part = progress(signals[*rule_.signal][c]);
-    if (part > 0 && part < 1) by_signals[*rule_.signal][c] += by_state[c] / (rule_.to - rule_.from);
+  const std::vector<double> seen = read(signals[*rule_.signal]);
+  std::vector<double> by_seen(seen.size(), 0.0);
+  for (std::size_t c = 0; c < seen.size(); ++c) {
+    const double part = progress(seen[c]);
+    if (part > 0 && part < 1) by_seen[c] = by_state[c] / (rule_.to - rule_.from);
     by_state[c] = 0;
   }
+  by_seen = by_values(std::move(by_seen));
+  for (std::size_t c = 0; c < seen.size(); ++c) by_signals[*rule_.signal][c] += by_seen[c];
 }
 
 void ShapeActivation::add_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
                                    std::span<Vec3> positions, const BeginningGradient& gradient) const {
   if (rule_.signal) return;  // it has been moved to the signal
-  const std::vector<double> to = ratios(step.positions), from = ratios(step.previous_positions);
+  const std::vector<double> to = read(ratios(step.positions)), from = read(ratios(step.previous_positions));
   const std::span<const double> before = step.internal;
   std::vector<double> by_to(to.size(), 0.0), by_from = by_to;
   for (std::size_t c = 0; c < to.size(); ++c) {
@@ -49,8 +62,8 @@ void ShapeActivation::add_gradient(const Step& step, std::span<const double> nex
       by_from[c] = later * (to[c] - rule_.threshold);
     }
   }
-  add_ratio_gradient(step.positions, by_to, positions);
-  if (starts()) add_ratio_gradient(step.previous_positions, by_from, gradient.previous);
+  add_ratio_gradient(step.positions, by_values(std::move(by_to)), positions);
+  if (starts()) add_ratio_gradient(step.previous_positions, by_values(std::move(by_from)), gradient.previous);
 }
 
 void ShapeActivation::add_ratio_gradient(std::span<const Vec3> x, std::span<const double> weights,

@@ -1,6 +1,8 @@
 // [contraction.NAME]: springs on edges of cells.
 #include "mechanics/active/contraction.hpp"
 
+#include <algorithm>
+
 #include "scenario/tables/table.hpp"
 
 namespace plica {
@@ -8,9 +10,32 @@ namespace {
 
 using C = ContractionInput;
 
-// Diagonals are those of four-sided faces.
-void check_diagonals(const Scenario& scenario, const Tissue& tissue, Errors& errors) {
+// A cable is a line: keys of faces do not apply.
+void check_border(const std::string& table, C& contraction, const Scenario& /*scenario*/, Input& input) {
+  if (contraction.border.empty() || !input.sound(table + ".border")) return;
+  const auto refuse = [&](const char* key, bool is_set, const std::string& remedy) {
+    if (is_set && input.sound(table + key))
+      input.report(table + key, "conflicts with `border`, which makes a cable", remedy);
+  };
+  refuse(".edges", contraction.faces == "lateral", "set edges to \"apical\" or \"basal\"");
+  refuse(".diagonals", contraction.diagonals, "remove one of them");
+  refuse(".tension_mN_per_m", contraction.tension_mN_per_m > 0, "set the tension of the cable as preload_nN");
+}
+
+OtherSide other_side(const C& contraction, const Tissue& tissue) {
+  return {tissue.regions.at(contraction.border), contraction.border == "all"};
+}
+
+// Diagonals are those of four-sided faces, and a cable needs a border.
+void check_edges(const Scenario& scenario, const Tissue& tissue, Errors& errors) {
   for (const auto& [name, it] : scenario.contractions) {
+    if (!it.border.empty()) {
+      const auto lines = border_lines(tissue, CellSide::apical, tissue.regions.at(it.region), other_side(it, tissue));
+      if (std::ranges::all_of(lines, [](const auto& of_cell) { return of_cell.empty(); }))
+        errors.push_back(diagnostic_at(scenario, "contraction." + name + ".border",
+                                       fmt::format("region \"{}\" has no edge there", it.region),
+                                       "set it to a region beside it, or to \"all\""));
+    }
     if (!it.diagonals) continue;
     const CellSet& region = tissue.regions.at(it.region);
     for (std::size_t c = 0; c < region.size(); ++c)
@@ -37,6 +62,15 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
     rule.preload = input.preload_nN;
     rule.damping = input.damping_nN_s_per_um;
     rule.tension = input.tension_mN_per_m;  // nN/um = mN/m
+    if (!input.border.empty()) {
+      const CellSet& beyond = origin.whole.regions.at(input.border);
+      for (std::size_t c = 0; c < beyond.size(); ++c)
+        if (beyond[c] != beyond[origin.mirror.original(CellId(c)).index()])
+          throw_at(scenario, "contraction." + name + ".border",
+                   fmt::format("region \"{}\" is not symmetric", input.border),
+                   "use a symmetric region, or remove embryo.mirror");
+      rule.border = other_side(input, model.tissue);
+    }
     const std::string table = "contraction." + name;
     CellPattern pattern = make_ablated_pattern(scenario, table, input, origin);
     std::vector<Spring> springs = contraction_springs(model.tissue, pattern, rule);
@@ -68,6 +102,8 @@ ScenarioTable contraction_table() {
   info.rows = {
       row("region", &C::region, anything, "Cells that contract.", {.required = true}),
       row("edges", &C::faces, one_of(words::edges), "Edges that carry springs."),
+      row("border", &C::border, anything,
+          "Cable: only edges shared with cells of this region outside their own; `all`: with all others, and a rim."),
       row("stiffness_nN_per_um", &C::stiffness_nN_per_um, not_negative, "Spring stiffness (nN/µm)."),
       row("along_ratio", &C::along_ratio, not_negative, "Factor on edges along the axis."),
       row("across_ratio", &C::across_ratio, not_negative, "Factor on edges across the axis."),
@@ -81,9 +117,13 @@ ScenarioTable contraction_table() {
   };
   add_program(info.rows, row, &C::program);
   add_pattern(info.rows, acting(row));
-  info.check = check_diagonals;
+  info.check = check_edges;
   info.build = build;
-  list_acting(info, &Scenario::contractions, describe);
+  list_acting(info, &Scenario::contractions, describe, check_border);
+  info.regions = [own = info.regions](const Scenario& scenario, const TakeRegion& take) {
+    own(scenario, take);
+    for (const auto& [name, it] : scenario.contractions) take("contraction." + name + ".border", it.border);
+  };
   return info;
 }
 

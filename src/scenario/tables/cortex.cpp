@@ -43,7 +43,8 @@ bool check_activation(const std::string& part, const ActivationInput& activation
     input.report(part + key, problem, remedy);
     return false;
   };
-  if (!activation.is_used() && has_bounds)
+  const bool is_of_neighbours = activation.of != ActivationInput().of;
+  if (!activation.is_used() && (has_bounds || is_of_neighbours))
     return report(
         ".measure", "is missing",
         fmt::format("set measure to one of: {}; or set signal", fmt::join(words_of(words::shape_measures), " | ")));
@@ -90,7 +91,16 @@ void check_direction(const std::string& table, const CortexInput& cortex, const 
     report(".axis", "is missing", "set axis to \"along\" or \"across\"");
   if (axis.empty()) return;
   if (strongest == weakest) report("", "has no effect, since strongest equals weakest", "set strongest above weakest");
+  const bool turns = axis == "long-axis" || axis == "stretch";
+  if (turns && !array.empty())
+    report(".array", "conflicts with an axis of the cell", "remove it, or set axis to \"along\"");
+  for (const auto& [key, value] :
+       {std::pair("stiffness_mN_per_m", cortex.stiffness_mN_per_m), {"crowding_mN_per_m", cortex.crowding_mN_per_m}})
+    if (turns && value > 0)
+      report(".axis", fmt::format("{} cannot turn with the cell, which needs energy", key),
+             fmt::format("put {} into another [cortex.NAME]", key));
   if (cortex.faces == "lateral") {
+    if (turns) report(".axis", "acts on apical and basal faces only", "set axis to \"along\" or \"across\"");
     if (!array.empty()) report(".array", "acts on apical and basal faces only", "remove it, or change faces");
     return;
   }
@@ -133,7 +143,7 @@ void check_cortex(const std::string& table, CortexInput& cortex, const Scenario&
   check_shape_activation(table, cortex, scenario, input);
 }
 
-bool is_across(const std::string& axis) { return meaning_of(words::delay_axes, axis) == PatternAxis::across; }
+bool is_across(const std::string& axis) { return meaning_of(words::fibre_axes, axis) == FibreAxis::across; }
 
 WallFactorRule make_wall_factors(const CortexInput& input) {
   WallFactorRule rule;
@@ -147,7 +157,10 @@ WallFactorRule make_wall_factors(const CortexInput& input) {
 // Gives apical and basal faces fibres, and their tension its value along them.
 void take_fibres(const DirectionInput& input, const Tissue& tissue, CortexRule& rule) {
   if (rule.side == CellSide::lateral || input.axis.empty()) return;
-  rule.fibres = {1 - input.weakest / input.strongest, is_across(input.axis) ? 90.0 : 0.0, {}};
+  rule.fibres = {1 - input.weakest / input.strongest,
+                 is_across(input.axis) ? 90.0 : 0.0,
+                 {},
+                 meaning_of(words::fibre_axes, input.axis)};
   if (!input.array.empty()) rule.fibres.angles_deg = tissue.cell_arrays.at(input.array);
   for (double* value : {&rule.tension, &rule.stiffness, &rule.crowding}) *value *= input.strongest;
 }
@@ -156,6 +169,7 @@ ShapeActivationRule make_shape_activation(const CortexInput& input, const Scenar
   ShapeActivationRule rule;
   const auto read = [&](const ActivationInput& activation) {
     rule.measure = meaning_of(words::shape_measures, activation.measure, rule.measure);
+    rule.of_neighbours = meaning_of(words::read_cells, activation.of);
     const auto signal = scenario.signals.find(activation.signal);
     if (signal != scenario.signals.end())
       rule.signal = static_cast<std::size_t>(std::distance(scenario.signals.begin(), signal));
@@ -249,18 +263,22 @@ ScenarioTable cortex_table() {
               "Measure that starts the time courses."),
           row("trigger.signal", &X::trigger, &TriggerInput::signal, anything,
               "Instead of `measure`: name of a `[signal.NAME]`."),
+          row("trigger.of", &X::trigger, &TriggerInput::of, one_of(words::read_cells),
+              "Whose: its own, or the mean of cells that share a lateral face with it."),
           row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
           row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
           row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::shape_measures),
               "Measure that scales the active tension."),
           row("follow.signal", &X::follow, &FollowInput::signal, anything,
               "Instead of `measure`: name of a `[signal.NAME]`."),
+          row("follow.of", &X::follow, &FollowInput::of, one_of(words::read_cells), "Whose, as in `trigger.of`."),
           row("follow.from", &X::follow, &FollowInput::from, not_negative,
               "Value at which, and before which, the factor is 0."),
           row("follow.to", &X::follow, &FollowInput::to, not_negative,
               "Value at which, and beyond which, the factor is 1."),
-          row("direction.axis", &X::direction, &DirectionInput::axis, one_of(words::delay_axes),
-              "Axis of fibres (apical, basal), or of planar polarity by the angle a to the normal (lateral)."),
+          row("direction.axis", &X::direction, &DirectionInput::axis, one_of(words::fibre_axes),
+              "Axis of fibres (apical, basal), or of planar polarity by the angle a to the normal (lateral); fibres by "
+              "cell, as far as it is elongated: its `long-axis`, or largest `stretch`."),
           row("direction.array", &X::direction, &DirectionInput::array, anything,
               "Apical, basal: array of angles by cell (degrees), counter-clockwise from the apical side."),
           row("direction.strongest", &X::direction, &DirectionInput::strongest, not_negative,

@@ -1,8 +1,11 @@
 // Apical and basal contraction: springs, programs and tensions.
 #include "mechanics/active/contraction.hpp"
 
+#include <functional>
+
 #include "mechanics/active/program.hpp"
 #include "support/law_checks.hpp"
+#include "tissue/mirror.hpp"
 
 namespace {
 
@@ -335,6 +338,87 @@ TEST(Tension, OfLateralFacesIsThatOfThePerimeter) {
   const auto springs =
       contraction_springs(sheet, CellSet(sheet.cells.size(), true), {.side = CellSide::lateral, .tension = 2});
   EXPECT_NEAR(pull_across(sheet, springs, 2, 1.1), 12 * 2 * (4 * 20), 1e-9);
+}
+
+CellSet cells_where(const Tissue& tissue, const std::function<bool(const Vec3&)>& chosen) {
+  CellSet cells;
+  for (const Cell& cell : tissue.cells) cells.push_back(chosen(cell_centre(cell, tissue.rest_positions)));
+  return cells;
+}
+
+// 2 x 2 of 4 x 4 cells: a cable of 8 edges of 20 x 15 um, on either side of the cells, however they are meshed.
+TEST(Cable, PullsAlongTheBorderOnly) {
+  BlockShape shape{.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 4, 1}};
+  for (const std::array<int, 3>& elements : {std::array<int, 3>{1, 1, 1}, {2, 3, 2}}) {
+    shape.elements_per_cell = elements;
+    const Tissue tissue = build_block(shape);
+    const CellSet inner =
+        cells_where(tissue, [](const Vec3& x) { return std::abs(x.x()) < 20 && std::abs(x.y()) < 15; });
+    const CellSet right = cells_where(tissue, [](const Vec3& x) { return x.x() > 0; });
+    for (const CellSide side : {CellSide::apical, CellSide::basal}) {
+      const auto cable = [&](const CellSet& beyond, double stiffness, double tension) {
+        return Contraction(
+            contraction_springs(
+                tissue, inner,
+                {.side = side, .stiffness = stiffness, .preload = tension, .border = OtherSide{beyond, true}}),
+            {});
+      };
+      const CellSet all(tissue.cells.size(), true);
+      Motion motion = at_rest(tissue);
+      EXPECT_NEAR(cable(all, 0, 3).energy(motion.step()), 3 * (4 * 20 + 4 * 15), 1e-10);
+      EXPECT_NEAR(cable(right, 0, 3).energy(motion.step()), 3 * (2 * 20 + 2 * 15), 1e-10);
+      EXPECT_NEAR(cable(all, 2, 0).energy(motion.step()), 4 * (20 * 20 + 15 * 15), 1e-10);
+      const Vectors forces = forces_of(cable(all, 0, 3), motion.step());
+      for (std::size_t n = 0; n < forces.size(); ++n) {
+        const Vec3& x = tissue.rest_positions[n];
+        const bool on_side = x.z() == (side == CellSide::apical ? 20 : -20);
+        const bool at_corner = on_side && std::abs(x.x()) == 20 && std::abs(x.y()) == 15;
+        EXPECT_NEAR(forces[n].norm(), at_corner ? 3 * std::sqrt(2.0) : 0, 1e-12);
+      }
+    }
+  }
+}
+
+// The perimeter; a mirror plane is no border of half of it.
+TEST(Cable, RunsAlongAFreeRim) {
+  const Tissue whole = build_block({.length_um = 80, .width_um = 60, .cell_height_um = 40, .cells = {4, 4, 1}});
+  const auto energy = [](const Tissue& tissue, bool has_rim) {
+    const CellSet all(tissue.cells.size(), true);
+    return Contraction(contraction_springs(tissue, all, {.preload = 2, .border = OtherSide{all, has_rim}}), {})
+        .energy(at_rest(tissue).step());
+  };
+  EXPECT_NEAR(energy(whole, true), 2 * 280, 1e-10);
+  EXPECT_EQ(energy(whole, false), 0);
+  EXPECT_NEAR(energy(side_of(whole, {false, true, false}).tissue, true), 280, 1e-10);
+  EXPECT_NEAR(energy(side_of(whole, {true, true, false}).tissue, true), 140, 1e-10);
+}
+
+// A sheet that is rolled up about x: a cable round the tube presses inward at each node with 2 P sin(a/2), where it
+// turns by a; times the nodes on a length, P/R of it.
+TEST(Cable, PressesOnATubeByLaplacesLaw) {
+  constexpr int around = 24;
+  constexpr double radius = 50, width = 2 * std::numbers::pi * radius, turn = 2 * std::numbers::pi / around;
+  const Tissue tissue =
+      build_block({.length_um = 40, .width_um = width, .cell_height_um = 10, .cells = {4, around, 1}});
+  const CellSet front = cells_where(tissue, [](const Vec3& x) { return x.x() > 0; });
+  const Contraction cable(
+      contraction_springs(tissue, front, {.preload = 0.8, .border = OtherSide{CellSet(front.size(), true), false}}),
+      {});
+  Motion motion = at_rest(tissue);
+  for (Vec3& x : motion.positions) {
+    const double angle = x.y() / radius, at = radius + x.z() - 5;
+    x = {x.x(), at * std::sin(angle), at * std::cos(angle)};
+  }
+  const Vectors forces = forces_of(cable, motion.step());
+  int pressed = 0;
+  for (std::size_t n = 0; n < forces.size(); ++n) {
+    const Vec3 &X = tissue.rest_positions[n], &x = motion.positions[n];
+    if (std::abs(X.y()) > 0.45 * width) continue;
+    const bool on_cable = X.x() == 0 && X.z() > 0;
+    pressed += on_cable ? 1 : 0;
+    EXPECT_NEAR(-forces[n].dot(Vec3(0, x.y(), x.z()).normalized()), on_cable ? 1.6 * std::sin(turn / 2) : 0, 1e-12);
+  }
+  EXPECT_EQ(pressed, 21);
 }
 
 }  // namespace

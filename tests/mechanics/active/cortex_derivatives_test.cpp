@@ -28,9 +28,14 @@ TEST(CortexDerivatives, OfShapeDependentActivityAgreeWithFiniteDifferences) {
   using Kind = ShapeActivationRule::Kind;
   for (const ShapeMeasure measure : {ShapeMeasure::apical_area_ratio, ShapeMeasure::basal_area_ratio,
                                      ShapeMeasure::height_ratio, ShapeMeasure::apical_stretch})
-    for (const Kind kind : {Kind::starts_below, Kind::starts_above, Kind::follows}) {
+    for (const auto& [kind, of_neighbours] : {std::pair(Kind::starts_below, false),
+                                              {Kind::starts_above, false},
+                                              {Kind::starts_above, true},
+                                              {Kind::follows, false},
+                                              {Kind::follows, true}}) {
       CortexRule rule = whole_cortex(CellSide::lateral);
-      rule.activation = {.kind = kind, .measure = measure, .threshold = 1.05, .from = 0.7, .to = 1.5};
+      rule.activation = {
+          .kind = kind, .measure = measure, .threshold = 1.05, .from = 0.7, .to = 1.5, .of_neighbours = of_neighbours};
       const Cortex law(tissue, every_cell, rule);
       const auto smooth = law.smooth();
       const Law& recorded = smooth ? *smooth : static_cast<const Law&>(law);
@@ -40,7 +45,8 @@ TEST(CortexDerivatives, OfShapeDependentActivityAgreeWithFiniteDifferences) {
         internal[first + c] = kind == Kind::follows ? 0.1 + 0.1 * static_cast<double>(c)
                               : c < 2               ? 0.3 + 0.2 * static_cast<double>(c)
                                                     : ShapeActivation::not_yet;
-      SCOPED_TRACE(testing::Message() << static_cast<int>(measure) << ", " << static_cast<int>(kind));
+      SCOPED_TRACE(testing::Message() << static_cast<int>(measure) << ", " << static_cast<int>(kind) << ", "
+                                      << of_neighbours);
       check_law_derivatives(recorded, tissue, 2, internal, 5e-6);
     }
 }

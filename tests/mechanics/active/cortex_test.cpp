@@ -367,6 +367,24 @@ TEST(ShapeActivation, FollowsBetweenTwoValues) {
   EXPECT_NEAR(followed(0.4, 1), 0.5, 1e-12);
 }
 
+// Three cells in a row, of which the last has 0.6 of its area.
+TEST(ShapeActivation, ReadsTheMeanOfNeighbours) {
+  const Tissue tissue = row();
+  Vectors smaller = tissue.rest_positions;
+  for (Vec3& x : smaller)
+    if (x.x() > 20) x.x() -= 8;
+  ShapeActivationRule rule{.kind = Kind::follows, .from = 1, .to = 0, .of_neighbours = true};
+  const auto expect = [&](const std::vector<double>& found, const std::vector<double>& expected) {
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t c = 0; c < found.size(); ++c) EXPECT_NEAR(found[c], expected[c], 1e-12) << c;
+  };
+  expect(ShapeActivation(tissue, rule).internal(smaller, 0, {}), {0, 0.2, 0});
+  rule.signal = 0;
+  expect(ShapeActivation(tissue, rule).of_signals(std::vector<CellArray>{{1, 0.5, 0.2}}, 0, {}), {0.5, 0.4, 0.5});
+  rule = {.kind = Kind::starts_below, .threshold = 0.9, .of_neighbours = true};
+  expect(ShapeActivation(tissue, rule).internal(smaller, 30, {}), {-1, 30, -1});
+}
+
 // A wall pulls by what each of its cells has come to; a cell that has not begun leaves its half out.
 TEST(ShapeActivation, ACortexActsFromItsCellsStart) {
   const Tissue tissue = row();
@@ -421,12 +439,12 @@ TEST(ShapeActivation, DecidesWhatTheClockDoesNot) {
 
 // When each cell began, who touches whom and rest areas that flow are part of what a run remembers.
 TEST(ShapeActivation, ARunGoesOnToTheSameBits) {
-  const Scenario scenario =
-      load_scenario(find_scenario("furrow-slice"),
-                    {"cortex.shortening.program.time_min=[0, 11]", "time.end_min=17.8",
-                     "cortex.shortening.trigger.measure=apical_area_ratio", "cortex.shortening.trigger.below=0.3",
-                     "cortex.surface.tension_mN_per_m=0.01", "cortex.surface.follow.measure=height_ratio",
-                     "cortex.surface.follow.from=1", "cortex.surface.follow.to=1.5"});
+  const Scenario scenario = load_scenario(
+      find_scenario("furrow-slice"),
+      {"cortex.shortening.program.time_min=[0, 11]", "time.end_min=17.8",
+       "cortex.shortening.trigger.measure=apical_area_ratio", "cortex.shortening.trigger.below=0.3",
+       "cortex.surface.tension_mN_per_m=0.01", "cortex.surface.follow.measure=height_ratio",
+       "cortex.surface.follow.of=neighbours", "cortex.surface.follow.from=1", "cortex.surface.follow.to=1.5"});
   Simulation whole(scenario);
   std::optional<RunMemory> kept;
   while (whole.step())

@@ -224,4 +224,51 @@ TEST(Fibres, AreHandedOnToDaughters) {
   EXPECT_NEAR(restored->energy(turned(tissue).step()), energy, 1e-12 * energy);
 }
 
+// Cells that are 1.6 times as long as wide, however they lie in space and were in the reference state: fibres have the
+// share (1.6^2 - 1)/(1.6^2 + 1) of that of a line.
+TEST(Fibres, TurnWithTheirCells) {
+  const Tissue tissue = build_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}});
+  const double share = 0.8, elongation = 1.6, anisotropy = (1.6 * 1.6 - 1) / (1.6 * 1.6 + 1);
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const Vec3 axis = Vec3(1, 0.6, 0).normalized();
+  Motion motion = at_rest(tissue);
+  for (Vec3& x : motion.positions) x = turn * Vec3(x + (elongation - 1) * x.dot(axis) * axis);
+  motion.previous_positions = motion.positions;
+  for (const FibreAxis of : {FibreAxis::long_axis, FibreAxis::stretch})
+    for (const CellSide side : {CellSide::apical, CellSide::basal}) {
+      const Cortex law(tissue, every(tissue), {.side = side, .tension = 1, .fibres = {share, 0, {}, of}});
+      // Both are a stretch of squares of 20 um: M = (1 - q a) A + q a l A_r = A here, by any share.
+      EXPECT_NEAR(law.energy(motion.step()), 6 * 400 * elongation, 1e-9);
+      Motion later = motion;
+      for (Vec3& x : later.positions) x += 0.1 * x.dot(turn * axis) * (turn * axis);
+      EXPECT_NEAR(law.energy(later.step()), 6 * 400 * elongation * 1.1, 1e-9);
+      later = motion;
+      const Vec3 across = turn * Vec3(-axis.y(), axis.x(), 0);
+      for (Vec3& x : later.positions) x += 0.1 * x.dot(across) * across;
+      EXPECT_NEAR(law.energy(later.step()), 6 * 400 * elongation * (1 + 0.1 * (1 - share * anisotropy)), 1e-9);
+    }
+}
+
+TEST(Fibres, ThatTurnHaveDerivativesOfTheirEnergy) {
+  const Tissue tissue =
+      distorted_block({.length_um = 60, .width_um = 40, .cell_height_um = 30, .cells = {3, 2, 1}}, 2, 3);
+  for (const FibreAxis of : {FibreAxis::long_axis, FibreAxis::stretch})
+    for (const CellSide side : {CellSide::apical, CellSide::basal}) {
+      const Cortex law(tissue, every(tissue),
+                       {.side = side, .tension = 1.4, .saturation = 0.2, .fibres = {0.9, 0, {}, of}});
+      check_derivatives(law, tissue, 2);
+      check_energy_flow(law, tissue);
+      expect_no_resultant_and_no_torque(law, tissue, 2);
+      EXPECT_SAYS(error_of<NoGradient>([&] { return &law.derivatives(); }), "fibres that turn");
+    }
+}
+
+// Round cells are pulled alike in all directions, by any share.
+TEST(Fibres, ThatTurnHaveNoEffectInRoundCells) {
+  const Tissue tissue = build_block({.length_um = 60, .width_um = 60, .cell_height_um = 10, .cells = {3, 3, 1}});
+  const auto [along, across] = pulls(tissue, {.tension = 0.8, .fibres = {1, 0, {}, FibreAxis::long_axis}}, 60, 60);
+  EXPECT_NEAR(along, 0.8, 1e-12);
+  EXPECT_NEAR(across, 0.8, 1e-12);
+}
+
 }  // namespace

@@ -1,0 +1,24 @@
+// Shape of the apical or basal surface of a region: curvature, and depth below the cells around it.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tissue/tissue.hpp"
+
+namespace plica {
+
+/// Curvature of a region's surface where it is in the middle, 1/um: that of the quadric nearest to its nodes; positive
+/// where it bulges outward. Along an axis projected into the surface, or the mean curvature. Empty if nodes do not
+/// determine it, or the axis is normal to the surface.
+std::optional<double> curvature_per_um(const Tissue& tissue, CellSide side, const CellSet& region,
+                                       std::optional<int> axis, std::span<const Vec3> positions);
+
+/// Depths of the apical surfaces of cells of a region below those of the cells around it, along their reference
+/// normals, um, minus the reference values. Cells around count by 1/d^4 of their reference distance d, so that those
+/// nearest across a furrow count. Empty if there are none.
+std::vector<double> depths_below_border_um(const Tissue& tissue, const CellSet& region, std::span<const CellId> cells,
+                                           std::span<const Vec3> positions);
+
+}  // namespace plica
