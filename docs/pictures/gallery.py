@@ -6,6 +6,7 @@ PYTHONPATH=build/release/python build/venv/bin/python docs/pictures/gallery.py b
 """
 import io
 import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -413,6 +414,20 @@ def feedback():
     write(figure, "feedback")
 
 
+def law():
+    """A sheet that a law from a formula folds, by law.py."""
+    if not (RESULTS / "law" / "summary.json").is_file():
+        runpy.run_path(str(Path(__file__).parent / "law.py"))["fold"](RESULTS / "law")
+    run = plica.open(RESULTS / "law")
+    figure, axes = new()
+    camera = Camera(back=(0.35, -0.75, 0.75), up=(0, 0, 1))
+    start = run.frames[0].polygons("apical")
+    sheet_picture(axes, run.frames[-1], at_place((415, 255), 4.6), camera, start.centres[:, 1] > -12)
+    bar(axes, 60, 48, 20, 4.6)
+    area_bar(axes, 480, 52)
+    write(figure, "law")
+
+
 LABELS = """\
 format = 1
 region.bright = { array = "reporter", above = 0.5 }
@@ -572,7 +587,7 @@ def readme():
         write(names["figure"], "readme", 64)
 
 
-CARDS = {one.__name__: one for one in (closing, measured, living, deep, twist, wing_disc, growing, wave, directions, endless, ablation, light, division, feedback, labels, phases, report, doors, readme)}
+CARDS = {one.__name__: one for one in (closing, measured, living, deep, twist, wing_disc, growing, wave, directions, endless, ablation, light, division, feedback, law, labels, phases, report, doors, readme)}
 
 if __name__ == "__main__":
     for card in sys.argv[2:] or CARDS:

@@ -6,6 +6,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "arrays.hpp"
@@ -73,6 +76,7 @@ class GivenEnergy final : public Law {
     throw UsageError(label() + ": its groups are nodes of the whole tissue, not of a part of it");
   }
   [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }
+  [[nodiscard]] const std::vector<std::int32_t>& nodes() const { return groups_; }
 
  private:
   struct Kept {
@@ -122,24 +126,32 @@ class GivenEnergy final : public Law {
   mutable std::array<Kept, 3> kept_;  // by order; one thread at a time
 };
 
+void check_nodes_of(const std::string& name, const GivenEnergy& law, const Simulation::Parts& parts) {
+  const auto refuse = [&](const std::string& why) { throw UsageError("energies: " + name + ": " + why); };
+  if (parts.full_model) refuse("groups are nodes of a whole tissue; remove embryo.mirror");
+  if (!parts.controls.divisions.empty() || parts.controls.exchange || !parts.controls.extrusions.empty())
+    refuse("groups are nodes that stay; remove division, exchange and extrusion");
+  const int count = static_cast<int>(parts.model->tissue.node_count());
+  for (const std::int32_t node : law.nodes())
+    if (node < 0 || node >= count)
+      refuse("node " + std::to_string(node) + "; give nodes from 0 to " + std::to_string(count - 1));
+}
+
 }  // namespace
 
-void add_energies(const nb::list& energies, Simulation::Parts& parts) {
+PartsAddition adding_energies(const nb::list& energies) {
+  std::vector<std::pair<std::string, GivenEnergy>> laws;
   for (const nb::handle one : energies) {
-    const auto name = nb::cast<std::string>(one[0]);
-    const auto groups = nb::cast<Groups>(one[1]);
-    const auto refuse = [&](const std::string& why) { throw UsageError("energies: " + name + ": " + why); };
-    if (parts.full_model) refuse("groups are nodes of a whole tissue; remove embryo.mirror");
-    if (!parts.controls.divisions.empty() || parts.controls.exchange || !parts.controls.extrusions.empty())
-      refuse("groups are nodes that stay; remove division, exchange and extrusion");
-    const int nodes = static_cast<int>(parts.model->tissue.node_count());
-    for (std::size_t i = 0; i < groups.size(); ++i)
-      if (const std::int32_t node = groups.data()[i]; node < 0 || node >= nodes)
-        refuse("node " + std::to_string(node) + "; give nodes from 0 to " + std::to_string(nodes - 1));
-    auto law = std::make_unique<GivenEnergy>(groups, nb::cast<nb::callable>(one[2]));
-    law->set_label("energy." + name);
-    parts.model->laws.push_back(std::move(law));
+    laws.emplace_back(nb::cast<std::string>(one[0]),
+                      GivenEnergy(nb::cast<Groups>(one[1]), nb::cast<nb::callable>(one[2])));
+    laws.back().second.set_label("energy." + laws.back().first);
   }
+  return [laws = std::move(laws)](Simulation::Parts& parts) {
+    for (const auto& [name, law] : laws) {
+      check_nodes_of(name, law, parts);
+      parts.model->laws.push_back(law.clone());
+    }
+  };
 }
 
 }  // namespace plica::python

@@ -3,20 +3,16 @@
 
 #include <nanobind/nanobind.h>
 
-#include <memory>
-#include <string>
-
-#include "mechanics/law.hpp"
-#include "simulation/simulation.hpp"
+#include "simulation/tape.hpp"
 
 namespace plica::python {
 
 namespace nb = nanobind;
 
-/// Add laws to a simulation in its reference state. `energies`: names, nodes of groups (int32, groups x nodes), and a
-/// function of their positions (groups x nodes x 3, um) and of an order, which returns energies (nN um), or gradients
-/// (groups x coordinates), or Hessians (groups x coordinates x coordinates), as C-contiguous float64. Throws UsageError
-/// where nodes of the scenario do not stay.
-void add_energies(const nb::list& energies, Simulation::Parts& parts);
+/// Return what adds laws to a simulation in its reference state, without the GIL. `energies`: names, nodes of groups
+/// (int32, groups x nodes), and a function of their positions (groups x nodes x 3, um) and of an order, which returns
+/// energies (nN um), or gradients (groups x coordinates), or Hessians (groups x coordinates x coordinates), as
+/// C-contiguous float64. It throws UsageError where nodes of the scenario do not stay.
+PartsAddition adding_energies(const nb::list& energies);
 
 }  // namespace plica::python

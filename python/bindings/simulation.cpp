@@ -33,13 +33,11 @@ namespace plica::python {
 namespace {
 
 std::unique_ptr<Simulation> simulation_of(const Scenario& scenario, int threads, const nb::list& energies) {
+  const PartsAddition add = adding_energies(energies);
   const nb::gil_scoped_release free;
   const SafeThreadCount count(threads);
   Simulation::Parts parts = parts_of(scenario);
-  {
-    const nb::gil_scoped_acquire lock;
-    add_energies(energies, parts);
-  }
+  add(parts);
   return std::make_unique<Simulation>(std::move(parts));
 }
 

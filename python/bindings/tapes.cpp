@@ -3,15 +3,18 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
 #include <memory>
 #include <set>
+#include <tuple>
 
 #include "arrays.hpp"
 #include "core/errors.hpp"
 #include "errors.hpp"
+#include "given_energy.hpp"
 #include "simulation.hpp"
 #include "simulation/tape.hpp"
 #include "thread_count.hpp"
@@ -49,21 +52,31 @@ class TapeOf {
   TapeOf(Tape tape, int threads) : tape_(std::move(tape)), threads_(threads) {}
 
   static std::unique_ptr<TapeOf> record(const CheckedScenario& scenario, int threads, std::vector<double> at_s,
-                                        double until_s, const StrengthFactors& strengths) {
+                                        double until_s, const StrengthFactors& strengths, const nb::list& energies) {
+    const PartsAddition add = adding_energies(energies);
     return computed(threads, [&](const auto& stop) {
-      return std::make_unique<TapeOf>(Tape(scenario.scenario, {std::move(at_s), until_s, strengths, stop}), threads);
+      return std::make_unique<TapeOf>(Tape(scenario.scenario, {std::move(at_s), until_s, strengths, add, stop}),
+                                      threads);
     });
   }
-  [[nodiscard]] std::unique_ptr<TapeOf> replayed(const CheckedScenario& scenario,
-                                                 const StrengthFactors& strengths) const {
+  [[nodiscard]] std::unique_ptr<TapeOf> replayed(const CheckedScenario& scenario, const StrengthFactors& strengths,
+                                                 const nb::list& energies) const {
+    const PartsAddition add = adding_energies(energies);
     return computed(threads_, [&](const auto&) {
-      return std::make_unique<TapeOf>(tape_.replayed(scenario.scenario, strengths), threads_);
+      return std::make_unique<TapeOf>(tape_.replayed({scenario.scenario, add}, strengths), threads_);
     });
   }
-  [[nodiscard]] std::shared_ptr<ModelPair> parameter(const std::string& name, const CheckedScenario& more,
-                                                     const CheckedScenario& less, double difference) const {
+  /// `more`, `less`: scenario and energies.
+  [[nodiscard]] std::shared_ptr<ModelPair> parameter(const std::string& name,
+                                                     const std::tuple<const CheckedScenario*, nb::list>& more,
+                                                     const std::tuple<const CheckedScenario*, nb::list>& less,
+                                                     double difference) const {
+    const auto variant_of = [](const auto& given) {
+      return Tape::Variant(std::get<0>(given)->scenario, adding_energies(std::get<1>(given)));
+    };
+    const Tape::Variant of_more = variant_of(more), of_less = variant_of(less);
     return computed(threads_, [&](const auto&) {
-      return std::make_shared<ModelPair>(tape_.parameter(name, more.scenario, less.scenario, difference));
+      return std::make_shared<ModelPair>(tape_.parameter(name, of_more, of_less, difference));
     });
   }
   [[nodiscard]] nb::tuple gradient(const std::map<std::size_t, NodeVectors>& outcome,
@@ -110,8 +123,8 @@ void bind_tapes(nb::module_& module) {
   nb::class_<ModelPair>(module, "Parameter");
   nb::class_<TapeOf>(module, "Tape")
       .def_static("record", &TapeOf::record, nb::arg("scenario"), nb::arg("threads"), nb::arg("at_s"),
-                  nb::arg("until_s"), nb::arg("strengths"))
-      .def("replayed", &TapeOf::replayed, nb::arg("scenario"), nb::arg("strengths"))
+                  nb::arg("until_s"), nb::arg("strengths"), nb::arg("energies"))
+      .def("replayed", &TapeOf::replayed, nb::arg("scenario"), nb::arg("strengths"), nb::arg("energies"))
       .def("parameter", &TapeOf::parameter, nb::arg("name"), nb::arg("more"), nb::arg("less"), nb::arg("difference"))
       .def("gradient", &TapeOf::gradient, nb::arg("outcome"), nb::arg("parameters"), nb::arg("law"),
            nb::arg("tolerance"))

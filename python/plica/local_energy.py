@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Callable
-from typing import Any, Union
+from collections.abc import Callable, Mapping
+from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .arguments import text_of
 from .errors import needed
 
 __all__ = ["LocalEnergy"]
@@ -42,8 +43,8 @@ class LocalEnergy:
     Notes
     -----
     Derivatives are exact, so runs take few Newton iterations. The law stores its energy; results are in `Simulation.energies` and
-    `Simulation.forces` under ``energy.NAME``. The scenario may not change the nodes (division, exchange, extrusion), nor have
-    mirror planes. Checkpoints do not hold the law: give it again to `load`.
+    `Simulation.forces` under ``energy.NAME``. `Tape.gradient` gives derivatives by ``energy.NAME.NUMBER``. The scenario may not change
+    the nodes (division, exchange, extrusion), nor have mirror planes. Checkpoints do not hold the law: give it again to `load`.
 
     Examples
     --------
@@ -79,6 +80,17 @@ class LocalEnergy:
     def __setstate__(self, state: dict[str, Any]) -> None:
         LocalEnergy.__init__(self, state["energy"], state["groups"], **state["numbers"])
 
+    def _value(self, number: str) -> float:
+        """Return a number; if it differs between groups, 1: a factor on all."""
+        values = self.numbers[number]
+        return float(values[0]) if (values == values[0]).all() else 1.0
+
+    def _scaled(self, number: str, factor: float) -> LocalEnergy:
+        """Return a copy with a number multiplied by a factor."""
+        scaled = object.__new__(type(self))
+        scaled.__dict__ = {**self.__dict__, "numbers": {**self.numbers, number: self.numbers[number] * factor}}
+        return scaled
+
     def __call__(self, positions: Array, order: int) -> Array:
         """Return energies, gradients or Hessians of the groups, by order; positions: shape (groups, 3 nodes), µm."""
         with np.errstate(all="ignore"):
@@ -91,6 +103,29 @@ class LocalEnergy:
             raise ValueError(f"LocalEnergy: the {what} of group {group} (nodes {self.groups[group].tolist()}) is not finite; "
                              "give an energy that is twice differentiable there")
         return result
+
+
+LocalLaw = tuple[str, NDArray[np.int32], LocalEnergy]  # name, groups, energy
+
+
+def laws_of(energies: Optional[Mapping[str, LocalEnergy]]) -> list[LocalLaw]:
+    for name, energy in (energies or {}).items():
+        text_of(name, "energies")
+        if not isinstance(energy, LocalEnergy):
+            raise ValueError(f"energies: {name}: {type(energy).__name__}; give a LocalEnergy")
+    return [(name, energy.groups, energy) for name, energy in (energies or {}).items()]
+
+
+def number_of(energies: Mapping[str, LocalEnergy], key: str) -> Optional[tuple[str, str]]:
+    """Return the names of an energy and of one of its numbers, of ``energy.NAME.NUMBER``; none for another key."""
+    start, _, rest = key.partition(".")
+    name, _, number = rest.rpartition(".")
+    if start != "energy" or not energies:
+        return None
+    if name not in energies or number not in energies[name].numbers:
+        known = [f"energy.{one}.{of_it}" for one, energy in energies.items() for of_it in energy.numbers]
+        raise ValueError(f"{key}: not a number of an energy; give one of {', '.join(known) or 'the scenario'}")
+    return name, number
 
 
 def _of_formula(formula: str, nodes: int, names: list[str]) -> tuple[Derivative, ...]:

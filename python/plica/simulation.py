@@ -18,7 +18,7 @@ from . import _core
 from .arguments import callable_of, number, path_of, per_cell, text_of, whole
 from .cell_data import CellData, Signals
 from .errors import FileError
-from .local_energy import LocalEnergy
+from .local_energy import LocalEnergy, LocalLaw, laws_of
 from .progress import Progress, moment
 from .results import Run, _grid, _pandas, open_run
 from .scenario import Scenario
@@ -31,7 +31,6 @@ __all__ = ["Simulation", "Step", "load"]
 
 log = logging.getLogger("plica")
 told_once: set[str] = set()  # warnings shown by this process
-LocalLaw = tuple[str, NDArray[np.int32], LocalEnergy]  # name, groups, energy
 
 
 def _warn_once(line: str) -> None:
@@ -111,7 +110,7 @@ class Simulation:
     def __init__(self, scenario: Union[Scenario, str, os.PathLike[str], Mapping[str, Any]], *, threads: Optional[int] = None,
                  energies: Optional[Mapping[str, LocalEnergy]] = None) -> None:
         own = scenario.copy() if isinstance(scenario, Scenario) else Scenario(scenario)
-        local = _local(energies)
+        local = laws_of(energies)
         core = _core.Simulation(own._ready, _threads(threads), energies=local)
         own._check_masks(len(core.pressures))
         self._begin(own, core, local)
@@ -672,20 +671,12 @@ def load(
     try:
         scenario = Scenario(_core.scenario_of_saved(saved), tissue=tissue, arrays=arrays)
         simulation = object.__new__(Simulation)
-        simulation._resume(scenario, _threads(threads), saved, _local(energies))
+        simulation._resume(scenario, _threads(threads), saved, laws_of(energies))
     except FileError as error:
         raise FileError(f"{source}: {error}") from error
     except UnicodeDecodeError as error:
         raise FileError(f"{source}: is damaged: its scenario is not valid text") from error
     return simulation
-
-
-def _local(energies: Optional[Mapping[str, LocalEnergy]]) -> list[LocalLaw]:
-    for name, energy in (energies or {}).items():
-        text_of(name, "energies")
-        if not isinstance(energy, LocalEnergy):
-            raise ValueError(f"energies: {name}: {type(energy).__name__}; give a LocalEnergy")
-    return [(name, energy.groups, energy) for name, energy in (energies or {}).items()]
 
 
 def _threads(threads: Optional[int]) -> int:

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .arguments import mapping_of, number, number_from, numbers, per_cell, text_of, texts_of, told, whole
 from .errors import ScenarioError
+from .local_energy import LocalEnergy, laws_of, number_of
 from .scenario import Scenario
 
 __all__ = ["GradientCheck", "Tape", "check_gradient", "record"]
@@ -30,6 +31,7 @@ def record(
     until_min: Optional[float] = None,
     at_min: Union[float, Iterable[float]] = (),
     strengths: Optional[Mapping[str, ArrayLike]] = None,
+    energies: Optional[Mapping[str, LocalEnergy]] = None,
     threads: int = 1,
 ) -> Tape:
     """Run a scenario and record it for gradients.
@@ -44,6 +46,8 @@ def record(
         Times at which outcomes are wanted, minutes. Steps end on them.
     strengths : mapping of str to array_like of float, shape (cells,), optional
         Factors, 0 or more, on the strengths of cells in contractions and cortices (``"cortex.apical"``).
+    energies : dict of str to LocalEnergy, optional
+        Force laws by name, as for `Simulation`.
     threads : int
         Threads per step.
 
@@ -76,8 +80,9 @@ def record(
     times_s = sorted({60 * time for time in _times(at_min)})
     until_s = math.inf if until_min is None else 60 * number_from(until_min, 0, "until_min", "a number above 0", above=True)
     factors = _factors(own, {} if strengths is None else strengths)
-    core = _core.Tape.record(own._ready, whole(threads, "threads", 1, 1024), times_s, until_s, factors)
-    return Tape(own, core, factors)
+    given = dict(energies or {})
+    core = _core.Tape.record(own._ready, whole(threads, "threads", 1, 1024), times_s, until_s, factors, laws_of(given))
+    return Tape(own, core, factors, given)
 
 
 class Tape:
@@ -86,8 +91,8 @@ class Tape:
     Gradients are exact for the recorded steps: their number, ends and orders do not change.
     """
 
-    def __init__(self, scenario: Scenario, core: _core.Tape, strengths: dict[str, list[float]]) -> None:
-        self._scenario, self._core, self._strengths = scenario, core, strengths
+    def __init__(self, scenario: Scenario, core: _core.Tape, strengths: dict[str, list[float]], energies: dict[str, LocalEnergy]) -> None:
+        self._scenario, self._core, self._strengths, self._energies = scenario, core, strengths, energies
         self._parameters: dict[str, _core.Parameter] = {}
 
     @property
@@ -163,8 +168,9 @@ class Tape:
             value and its gradient, of the same shape; or the gradient alone. With several times, positions and gradient have shape
             (times, nodes, 3).
         of : str or iterable of str
-            Key of the scenario with a number (``"cortex.apical.tension_mN_per_m"``), or several. With ``by="cell"``, one contraction
-            or cortex (``"cortex.apical"``).
+            Key of the scenario with a number (``"cortex.apical.tension_mN_per_m"``), or number of a `LocalEnergy`
+            (``"energy.springs.k"``; if it differs between groups, a factor on all), or several. With ``by="cell"``, one contraction or
+            cortex (``"cortex.apical"``).
         by : "cell", optional
             For the derivative by a factor on the strength of each cell, 1 for the scenario's.
         at_min : float or iterable of float, optional
@@ -290,25 +296,39 @@ class Tape:
             by_state[state] = np.ascontiguousarray(by_state.get(state, 0) + part)
         return value, by_state
 
-    def _changed(self, key: str, part: float) -> Scenario:
-        """Return the scenario with a key changed by this part of its value."""
-        value = self._scenario[key]
+    def _value(self, key: str) -> float:
+        """Return the value of a key, or of a number of an energy."""
+        of_energy = number_of(self._energies, key)
+        value = self._energies[of_energy[0]]._value(of_energy[1]) if of_energy else self._scenario[key]
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise ValueError(f"{key}: {told(value)}; choose a key that has a number")
         if value == 0:
             raise ValueError(f"{key}: is 0, where its change has no scale; set a small value above 0 for a gradient there")
+        return float(value)
+
+    def _changed(self, key: str, part: float) -> tuple[Scenario, dict[str, LocalEnergy]]:
+        """Return scenario and energies with a key changed by this part of its value."""
+        value, energies = self._value(key), dict(self._energies)
+        if of_energy := number_of(energies, key):
+            name, number_name = of_energy
+            energies[name] = energies[name]._scaled(number_name, 1 + part)
+            return self._scenario, energies
         changed = self._scenario.copy()
         try:
             changed[key] = value * (1 + part)
         except ScenarioError as error:
-            raise ValueError(f"{key}: cannot be varied about {value}; choose a key with a range of numbers ({error})") from error
-        return changed
+            raise ValueError(f"{key}: cannot be varied about {value:g}; choose a key with a range of numbers ({error})") from error
+        return changed, energies
+
+    def _replayed(self, scenario: Scenario, strengths: dict[str, list[float]], energies: dict[str, LocalEnergy]) -> Tape:
+        """Return a changed run through the same steps."""
+        return Tape(scenario, self._core.replayed(scenario._ready, strengths, laws_of(energies)), strengths, energies)
 
     def _parameter(self, key: str) -> _core.Parameter:
         if key not in self._parameters:
-            more, less = self._changed(key, KEY_CHANGE), self._changed(key, -KEY_CHANGE)
-            difference = 2 * KEY_CHANGE * float(self._scenario[key])
-            self._parameters[key] = self._core.parameter(key, more._ready, less._ready, difference)
+            changed = [self._changed(key, part) for part in (KEY_CHANGE, -KEY_CHANGE)]
+            more, less = [(scenario._ready, laws_of(energies)) for scenario, energies in changed]
+            self._parameters[key] = self._core.parameter(key, more, less, 2 * KEY_CHANGE * self._value(key))
         return self._parameters[key]
 
     def __repr__(self) -> str:
@@ -389,23 +409,22 @@ def check_gradient(
     It takes two to eight runs per comparison and one more, with tight tolerances.
     """
     changes = CHECK_CHANGES if change is None else (number_from(change, 0, "change", "a number above 0", above=True),)
-    base = Tape(tape._scenario, tape._core.replayed(tape._scenario._ready, tape._strengths), tape._strengths)
+    base = tape._replayed(tape._scenario, tape._strengths, tape._energies)
     slopes = np.atleast_1d(base.gradient(outcome, of=of, by=by, at_min=at_min, tolerance=1e-11))
 
-    def value(scenario: Scenario, strengths: dict[str, list[float]]) -> float:
-        return Tape(scenario, tape._core.replayed(scenario._ready, strengths), strengths).value(outcome, at_min=at_min)
+    def value(strengths: dict[str, list[float]], scenario: Scenario, energies: dict[str, LocalEnergy]) -> float:
+        return tape._replayed(scenario, strengths, energies).value(outcome, at_min=at_min)
 
     if by is None:
         keys = [of] if isinstance(of, str) else texts_of(of, "of")
-        return [_checked(key, float(slope), changes, lambda part, key=key: value(base._changed(key, part), tape._strengths),
-                         float(base._scenario[key]))
+        return [_checked(key, float(slope), changes, lambda part, key=key: value(tape._strengths, *base._changed(key, part)), base._value(key))
                 for key, slope in zip(keys, slopes)]
     law = text_of(of, "of")
     at = np.array(tape._strengths.get(law, np.ones(len(slopes))))
     largest = int(np.argmax(np.abs(slopes)))
     directions = {"a random direction": np.random.default_rng(0).uniform(0, 1, len(slopes)), f"cell {largest}": np.eye(len(slopes))[largest]}
     return [_checked(f"{law}, {name}", float(direction @ slopes), changes, lambda part, direction=direction: value(
-                base._scenario, {**tape._strengths, law: (at + part * direction).tolist()}), 1.0)
+                {**tape._strengths, law: (at + part * direction).tolist()}, tape._scenario, tape._energies), 1.0)
             for name, direction in directions.items()]
 
 

@@ -40,8 +40,9 @@ struct ChangesOfTissue final : SimulationListener {
 };
 
 /// Return the parts of a simulation, with the laws of recorded runs (LawDerivatives::smooth).
-Simulation::Parts smooth_parts_of(const Scenario& scenario) {
+Simulation::Parts smooth_parts_of(const Scenario& scenario, const PartsAddition& add) {
   Simulation::Parts parts = parts_of(scenario);
+  if (add) add(parts);
   require_derivatives(*parts.model);
   for (std::unique_ptr<Law>& law : parts.model->laws)
     if (std::unique_ptr<Law> smooth = law->derivatives().smooth()) law = std::move(smooth);
@@ -59,8 +60,8 @@ RunMethod method_of(const RunControls& controls) {
 }  // namespace
 
 Tape::Tape(const Scenario& scenario, const RecordingInput& input)
-    : scenario_(std::make_shared<const Scenario>(scenario)), strengths_(input.strengths) {
-  Simulation::Parts parts = smooth_parts_of(scenario);
+    : scenario_(std::make_shared<const Scenario>(scenario)), add_(input.add), strengths_(input.strengths) {
+  Simulation::Parts parts = smooth_parts_of(scenario, add_);
   unscaled_ = scale_strengths(parts, strengths_);
   method_ = method_of(parts.controls);
   if (parts.full_model) mirror_ = parts.full_model->mirror();
@@ -115,13 +116,13 @@ std::size_t Tape::state_at(double time_s) const {
   throw UsageError(fmt::format("no step ends at {:g} min; record the run with this time in at_min", time_s / 60));
 }
 
-std::unique_ptr<Model> Tape::solved_model(const Scenario& scenario) const {
-  Simulation::Parts parts = smooth_parts_of(scenario);
+std::unique_ptr<Model> Tape::solved_model(const Variant& changed) const {
+  Simulation::Parts parts = smooth_parts_of(changed.scenario, addition_of(changed));
   scale_strengths(parts, strengths_);
   return std::move(parts.model);
 }
 
-ModelPair Tape::parameter(std::string name, const Scenario& more, const Scenario& less, double difference) const {
+ModelPair Tape::parameter(std::string name, const Variant& more, const Variant& less, double difference) const {
   return model_pair(*solved_, std::move(name), solved_model(more), solved_model(less), difference);
 }
 
@@ -177,11 +178,12 @@ std::optional<std::vector<std::vector<double>>> Tape::jacobian(const std::vector
   return rows;
 }
 
-Tape Tape::replayed(const Scenario& scenario, const StrengthFactors& strengths) const {
+Tape Tape::replayed(const Variant& changed, const StrengthFactors& strengths) const {
   Tape other;
-  other.scenario_ = std::make_shared<const Scenario>(scenario);
+  other.scenario_ = std::make_shared<const Scenario>(changed.scenario);
+  other.add_ = addition_of(changed);
   other.strengths_ = strengths;
-  Simulation::Parts parts = smooth_parts_of(scenario);
+  Simulation::Parts parts = smooth_parts_of(changed.scenario, other.add_);
   other.unscaled_ = scale_strengths(parts, strengths);
   other.first_internals_ = first_internals_;
   other.mirror_ = mirror_;

@@ -30,10 +30,14 @@ struct RecordingFailed : std::runtime_error {
 /// Factors on the strengths of cells by law identifier; one per cell of the whole embryo.
 using StrengthFactors = std::map<std::string, std::vector<double>>;
 
+/// Adds to the parts of a simulation what a scenario does not hold: laws of the caller.
+using PartsAddition = std::function<void(Simulation::Parts&)>;
+
 struct RecordingInput {
   std::vector<double> at_s = {};  // times on which steps end, ascending; then the run continues to its end
   double until_s = std::numeric_limits<double>::infinity();
   StrengthFactors strengths = {};
+  PartsAddition add = {};
   std::function<bool()> stop_requested = {};
 };
 
@@ -57,9 +61,16 @@ class Tape {
   /// Return an output variable after a number of steps, and its gradient by positions (smooth_outcome).
   [[nodiscard]] SmoothOutcome outcome(const std::string& name, std::size_t state) const;
 
-  /// Return the key as a parameter, from the scenario with a larger and a smaller value of it. NoGradient as
-  /// model_pair.
-  [[nodiscard]] ModelPair parameter(std::string name, const Scenario& more, const Scenario& less,
+  /// Scenario and addition of a changed run; without one, the addition of this run.
+  struct Variant {
+    Variant(const Scenario& changed, PartsAddition addition = {})  // NOLINT: meant to convert
+        : scenario(changed), add(std::move(addition)) {}
+    const Scenario& scenario;
+    PartsAddition add;
+  };
+  /// Return a key, or a number of an added law, as a parameter, from runs with a larger and a smaller value of it.
+  /// NoGradient as model_pair.
+  [[nodiscard]] ModelPair parameter(std::string name, const Variant& more, const Variant& less,
                                     double difference) const;
 
   struct Wanted {
@@ -77,18 +88,22 @@ class Tape {
   [[nodiscard]] std::optional<std::vector<std::vector<double>>> jacobian(const std::vector<OutcomeGradient>& outcomes,
                                                                          const TangentInput& wanted) const;
 
-  /// Repeat the same steps with tight tolerances, for another scenario or other strengths: an oracle of gradients.
-  [[nodiscard]] Tape replayed(const Scenario& scenario, const StrengthFactors& strengths) const;
+  /// Repeat the same steps with tight tolerances, for a changed run or other strengths: an oracle of gradients.
+  [[nodiscard]] Tape replayed(const Variant& changed, const StrengthFactors& strengths) const;
   [[nodiscard]] const Scenario& scenario() const { return *scenario_; }
   [[nodiscard]] const StrengthFactors& strengths() const { return strengths_; }
 
  private:
   Tape() = default;
-  [[nodiscard]] std::unique_ptr<Model> solved_model(const Scenario& scenario) const;
+  [[nodiscard]] const PartsAddition& addition_of(const Variant& changed) const {
+    return changed.add ? changed.add : add_;
+  }
+  [[nodiscard]] std::unique_ptr<Model> solved_model(const Variant& changed) const;
   /// Return the gradient by positions of the solved side.
   [[nodiscard]] OutcomeGradient of_solved_side(const OutcomeGradient& outcome) const;
 
   std::shared_ptr<const Scenario> scenario_;
+  PartsAddition add_;
   std::shared_ptr<const Model> whole_, solved_;
   std::vector<std::vector<double>> first_internals_;  // laws of the whole embryo
   std::shared_ptr<const MeasurePlan> measure_plan_;

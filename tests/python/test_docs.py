@@ -1,5 +1,6 @@
 """The Python of the documentation runs as it stands."""
 import re
+import runpy
 from pathlib import Path
 
 import pytest
@@ -68,6 +69,13 @@ def test_gallery(tmp_path, monkeypatch):
     begin_s, place_um = names["begin_s"], names["sim"].cell_data["x_um"]
     middle, end = (begin_s[abs(place_um - at) < 20].mean() for at in (0, 100))
     assert 60 < middle < end < 240
+
+
+def test_law_of_the_gallery(tmp_path):
+    pytest.importorskip("sympy")
+    names = runpy.run_path(str(ROOT / "docs/pictures/law.py"))
+    ratios, ring = names["fold"](tmp_path / "law").cell_data["apical_area_ratio"], names["ring"]
+    assert ratios[ring].mean() < 0.5 and abs(ratios[~ring].mean() - 1) < 0.1
 
 
 def test_gradients_page(capsys):

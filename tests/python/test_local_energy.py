@@ -97,6 +97,35 @@ def test_functions_in_jax(columns):
     assert apart < 1e-8
 
 
+def height(positions):
+    """Mean height of all nodes, and its gradient."""
+    gradient = np.zeros_like(positions)
+    gradient[:, 2] = np.where(positions[:, 2] > 10, 1, -1) / len(positions)
+    return float((gradient * positions).sum()), gradient
+
+
+def test_gradients_by_numbers_agree_with_differences(columns):
+    tape = plica.record(SHEET, until_min=0.2, energies=springs(columns))
+    assert np.array_equal(tape.positions(), run(springs(columns), seconds=12).positions)
+    keys = ["energy.springs.k", "energy.springs.L", "elasticity.young_modulus_Pa"]
+    for check in plica.check_gradient(tape, height, of=keys):
+        assert abs(check.gradient) > 1e-5 and check.error < 1e-7, check
+    more, less = (plica.record(SHEET, until_min=0.2, energies=springs(columns, k=k)).value(height) for k in (2.02, 1.98))
+    assert tape.gradient(height, of="energy.springs.k") == pytest.approx((more - less) / 0.04, rel=0.02)
+    assert tape.jacobian(height, of=keys)[0, 0] == pytest.approx(tape.gradient(height, of=keys), rel=1e-7)
+    # A number that differs between groups: by a factor on all.
+    lengths = plica.record(SHEET, until_min=0.2, energies=springs(columns, L=np.linspace(14, 16, len(columns))))
+    [check] = plica.check_gradient(lengths, height, of="energy.springs.L")
+    assert check.error < 1e-7 and check.gradient == pytest.approx(15 * tape.gradient(height, of="energy.springs.L"), rel=0.1)
+
+
+@pytest.mark.parametrize("key", ["energy.springs.q", "energy.other.k", "energy.springs"])
+def test_only_numbers_of_energies_have_gradients(columns, key):
+    tape = plica.record(SHEET, until_min=0.05, energies=springs(columns))
+    with pytest.raises(ValueError, match=f"{key}: not a number of an energy; give one of energy.springs.k, energy.springs.L"):
+        tape.gradient(height, of=key)
+
+
 @pytest.mark.parametrize("make, text", [
     (lambda c: LocalEnergy("k * length(0, 1)", c), "'k' has no value"),
     (lambda c: LocalEnergy("2 * length(0, 1", c), "cannot be read"),
