@@ -127,7 +127,7 @@ class LabelledShapes(Mapping[float, dict[str, Array]]):
         later = np.isfinite(sizes).argmax(axis=0)
         first = (self.areas_um2 if self._is_image else self.volumes_um3)[0]
         with np.errstate(invalid="ignore"):
-            return self.doubtful[0] & ~(np.abs(np.log(first / sizes[later, np.arange(len(first))])) < CHANGE)
+            return np.asarray(self.doubtful[0] & ~(np.abs(np.log(first / sizes[later, np.arange(len(first))])) < CHANGE))
 
     def _told(self) -> list[str]:
         remarks = []
@@ -374,13 +374,16 @@ def _of_volume(volume: NDArray[Any], spacing: tuple[float, ...], apical: Optiona
     cell = np.array([cell_of.get(int(label), OUTSIDE) for label in tissue.cell_data["label"]])
     seen = cell != OUTSIDE
     number = np.searchsorted(labels.names, tissue.cell_data["label"].astype(np.int64))
-    of_labels = (*_apical_faces(made, steps), *label_moments(labels.numbers, labels.cells, steps, labels.origin * steps))
-    found = []
-    for values in (*(one[number] for one in of_labels), tissue.heights):
-        found.append(np.full((len(cell_of), *values.shape[1:]), np.nan))
-        found[-1][cell[seen]] = values[seen]
-    meeting = _meeting(tissue.cells, cell, len(tissue.apical))
-    return _Measured(*found[:2], found[-1], _placed(tissue.apical, meeting, column, corners), *found[2:-1])
+
+    def by_cell(values: Array) -> Array:
+        found = np.full((len(cell_of), *values.shape[1:]), np.nan)
+        found[cell[seen]] = values[seen]
+        return found
+
+    centres, areas = (by_cell(one[number]) for one in _apical_faces(made, steps))
+    whole = [by_cell(one[number]) for one in label_moments(labels.numbers, labels.cells, steps, labels.origin * steps)]
+    placed = _placed(tissue.apical, _meeting(tissue.cells, cell, len(tissue.apical)), column, corners)
+    return _Measured(centres, areas, by_cell(tissue.heights), placed, whole[0], whole[1], whole[2])
 
 
 def _apical_faces(made: MeasuredVolume, spacing: Array) -> tuple[Array, Array]:
@@ -388,7 +391,7 @@ def _apical_faces(made: MeasuredVolume, spacing: Array) -> tuple[Array, Array]:
     labels, of = made.labels, made.sides.side == made.apical
     cell, area = made.sides.faces.cell[of] - 1, np.linalg.norm(made.sides.normals[of], axis=1)
     places = (face_places(made.sides.faces.select(of), labels.numbers.shape, spacing) + labels.origin * spacing)[:, ::-1]
-    areas = np.bincount(cell, area, labels.cells)
+    areas = np.bincount(cell, area, labels.cells).astype(np.float64, copy=False)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.stack([np.bincount(cell, area * axis, labels.cells) for axis in places.T], axis=1) / areas[:, None], areas
 

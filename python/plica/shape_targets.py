@@ -59,11 +59,11 @@ class ApicalFaces:
 
     def changed(self, areas: Array, first: Array, of_model: Array) -> Array:
         """Return areas of the model after the measured change since the first ones; NaN where these are 0."""
-        return areas * of_model / np.where(first > 0, first, np.nan)
+        return np.asarray(areas * of_model / np.where(first > 0, first, np.nan))
 
     def noise(self, areas: Array, noise_um: float) -> Array:
         """Return the noise of areas if centres have this one: that of squares whose corners have it."""
-        return noise_um * np.sqrt(2 * np.maximum(areas, noise_um**2))
+        return np.asarray(noise_um * np.sqrt(2 * np.maximum(areas, noise_um**2)))
 
     def _sum(self, of_facets: Array) -> Array:
         total = np.zeros((self.cells, *of_facets.shape[1:]))
@@ -110,7 +110,7 @@ class CellTarget:
     @property
     def seen(self) -> NDArray[np.bool_]:
         """Which residuals are known."""
-        return np.isfinite(np.concatenate([self.middles.ravel(), self.sizes.ravel()]))
+        return np.asarray(np.isfinite(np.concatenate([self.middles.ravel(), self.sizes.ravel()])))
 
     def compare_changes_since(self, first: CellTarget, positions: Array) -> None:
         """Compare changes since a first shape, of which these are the positions in the model."""
@@ -225,7 +225,7 @@ def _cell_target(what: str, measures: Union[ApicalFaces, WholeCells], given: Map
         if values[-1].shape != shape:
             raise ValueError(f"{what}: {name} of shape {values[-1].shape} for {cells} cells; give {shape}, one row per cell of the scenario, in "
                              "the order of cell_data, NaN where unknown")
-    return _seen(CellTarget(measures, *values, noise_um), what)
+    return _seen(CellTarget(measures, values[0], values[1], noise_um), what)
 
 
 def _seen(target: Target, what: str) -> Target:
