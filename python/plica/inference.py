@@ -28,9 +28,10 @@ from .arguments import number_from, path_of, text_of, texts_of, told, whole
 from .errors import FileError, NumericsError
 from .knots import divided, times_of
 from .scenario import Scenario
-from .shape_targets import ApicalFaces, CellTarget, NodeTarget, Target, target_of
+from .shape_targets import ApicalFaces, CellTarget, NodeTarget, Residuals, target_of
 from .simulation import Simulation
 from .tapes import Tape, record
+from .whole_cells import WholeCells
 
 __all__ = ["Inference", "infer"]
 
@@ -103,8 +104,8 @@ class _Field:
 class _Problem:
     """Misfit of runs to targets, and its gradient by coefficients of the fields."""
 
-    def __init__(self, scenario: Scenario, fields: list[_Field], times_min: list[float], targets: list[Target], threads: int) -> None:
-        self.scenario, self.fields, self.times_min, self.targets, self.threads = scenario, fields, times_min, targets, threads
+    def __init__(self, scenario: Scenario, fields: list[_Field], times_min: list[float], residuals: Residuals, threads: int) -> None:
+        self.scenario, self.fields, self.times_min, self.residuals, self.threads = scenario, fields, times_min, residuals, threads
         self.runs = 0
 
     def logs(self, v: Array) -> list[Array]:
@@ -133,7 +134,10 @@ class _Problem:
 
     def misfits(self, tape: Tape, times: int) -> Array:
         """Return the sum of squared residuals at each of the first times."""
-        return np.array([target.misfit(tape.positions(time))[0] for time, target in zip(self.times_min[:times], self.targets)])
+        return self.residuals.of(self._positions(tape, times))[1]
+
+    def _positions(self, tape: Tape, times: int) -> list[Array]:
+        return [tape.positions(time) for time in self.times_min[:times]]
 
     def by_logs(self, tape: Tape, v: Array, by_positions: Array) -> list[Array]:
         """Return the gradient by log factors of acting cells of each law, from that by positions at the first times."""
@@ -143,17 +147,16 @@ class _Problem:
 
     def gradient(self, tape: Tape, v: Array, times: int) -> Array:
         """Return the gradient of half the misfit by coefficients."""
-        by_positions = np.stack([target.misfit(tape.positions(time))[1] for time, target in zip(self.times_min[:times], self.targets)])
-        return np.concatenate([field.vectors.T @ part for field, part in zip(self.fields, self.by_logs(tape, v, by_positions / 2))])
+        by_positions = self.residuals.gradients(self._positions(tape, times))
+        return np.concatenate([field.vectors.T @ part for field, part in zip(self.fields, self.by_logs(tape, v, by_positions))])
 
     def probe(self, tape: Tape, v: Array, times: int, rng: np.random.Generator) -> list[Array]:
         """Return the gradient by log factors of a sum of residuals with independent normal weights."""
-        return self.by_logs(tape, v, np.stack([
-            target.probe(tape.positions(time), rng) for time, target in zip(self.times_min[:times], self.targets)]))
+        return self.by_logs(tape, v, self.residuals.probe(self._positions(tape, times), rng))
 
-    def counts(self, times: int) -> NDArray[np.int64]:
+    def counts(self, times: int) -> Array:
         """Return the number of residuals at each of the first times."""
-        return np.array([target.count for target in self.targets[:times]])
+        return self.residuals.counts(times)
 
 
 class _Descent:
@@ -272,7 +275,7 @@ class _Descent:
 
     def fit(self, most_runs: int, after_step: Callable[[], None]) -> None:
         """Iterate to the minimum: first for the first time alone, then with the next one, and so on."""
-        last = len(self.problem.targets)
+        last = len(self.problem.times_min)
         for times in range(max(self.times, 1), last + 1):
             self.begin(times)
             adapted = 0  # times since the last step
@@ -411,13 +414,16 @@ def infer(
         The model: as for `record`. Its strengths are where the search begins.
     shapes : mapping of float to shape
         By time in minutes. A shape is an array of node positions, µm, of shape (nodes, 3), NaN where unknown, for the mesh of the
-        scenario; or, for any mesh, apical faces of cells in the order of ``Simulation.cell_data``: a `Frame`, `Polygons`, or a
-        mapping with ``centres_um`` of shape (cells, 3) and ``areas_um2`` of shape (cells,), NaN where unknown. With a shape at 0,
-        displacements and ratios of areas since then are compared; give it if the mesh is another one than that of the scenario.
+        scenario; or, for any mesh, cells in the order of ``Simulation.cell_data``, NaN where unknown: a `Frame`, `Polygons`, or a
+        mapping with ``centres_um`` of shape (cells, 3) and ``areas_um2`` of shape (cells,) of apical faces, or with ``centroids_um``
+        of shape (cells, 3) and ``moments_um2`` of shape (cells, 6) of whole cells: second moments about the centroid, divided by the
+        volume, xx, yy, zz, xy, yz, xz. With a shape at 0, displacements, ratios of areas and changes of moments since then are
+        compared, and share its noise; give it if the mesh is another one than that of the scenario.
     of : str or iterable of str
         Contractions or cortices (``"cortex.apical"``).
     noise_um : float
-        Standard deviation of each coordinate of nodes or centres, µm. Areas have sqrt(2 area) times that.
+        Standard deviation of each coordinate of nodes, centres or centroids, in each shape, µm. Areas have sqrt(2 area) times that; moments that of
+        cells whose sides are off independently.
     knots_min : iterable of float, optional
         Two or more times, minutes, at which factors differ; linear in between, constant before and after, independent a priori. By
         default factors are constant in time. Each knot adds one gradient per run.
@@ -481,8 +487,8 @@ def infer(
         knots = times_of(knots_min)
         laws = [part for law in laws for part in divided(own, law, knots)]
         simulation = Simulation(own, threads=threads)
-    times_min, targets = _targets(own, simulation, shapes, surface, noise)
-    problem = _Problem(own, [_Field(simulation, law, length_um) for law in laws], times_min, targets, whole(threads, "threads", 1, 1024))
+    times_min, residuals = _residuals(own, simulation, shapes, surface, noise)
+    problem = _Problem(own, [_Field(simulation, law, length_um) for law in laws], times_min, residuals, whole(threads, "threads", 1, 1024))
     descent = _Descent(problem, spread, whole(probes, "probes", 1))
     keep = None if file is None else _Kept(path_of(file, "file"), descent)
     limit = whole(most_runs, "most_runs", 1)
@@ -497,12 +503,12 @@ def infer(
     return _result(descent)
 
 
-def _targets(scenario: Scenario, simulation: Simulation, shapes: Any, surface: str, noise_um: float) -> tuple[list[float], list[Target]]:
+def _residuals(scenario: Scenario, simulation: Simulation, shapes: Any, surface: str, noise_um: float) -> tuple[list[float], Residuals]:
     if not isinstance(shapes, Mapping) or not shapes:
         raise TypeError(f"shapes: {told(shapes)}; give a mapping of times in minutes to shapes")
     nodes, cells = len(simulation.positions), len(simulation.pressures)
     start = record(scenario, until_min=1e-6)
-    faces = ApicalFaces(simulation, start._core.surface_nodes("apical"), cells)
+    faces, whole = ApicalFaces(simulation, start._core.surface_nodes("apical"), cells), WholeCells(simulation, cells)
     compared = np.arange(nodes) if surface == "all" else start._core.surface_nodes(text_of(surface, "surface"))
     by_time = {number_from(time, 0, "shapes", "times in minutes"): shape for time, shape in shapes.items()}
     times_min = sorted(time for time in by_time if time > 0)
@@ -511,23 +517,25 @@ def _targets(scenario: Scenario, simulation: Simulation, shapes: Any, surface: s
     if 60 * times_min[-1] > simulation._core.end_s:
         raise ValueError(f"shapes: {times_min[-1]:g} min is after the end of the run, {simulation._core.end_s / 60:g} min; set a later "
                          "time.end_min, or leave this shape out")
-    targets = [target_of(by_time[time], f"shapes[{time:g}]", faces, nodes, compared, noise_um) for time in times_min]
+    targets = [target_of(by_time[time], f"shapes[{time:g}]", faces, whole, nodes, compared, noise_um) for time in times_min]
+    first = None
     if 0 in by_time:
-        first = target_of(by_time[0], "shapes[0]", faces, nodes, compared, noise_um)
+        first = target_of(by_time[0], "shapes[0]", faces, whole, nodes, compared, noise_um)
         for time, target in zip(times_min, targets):
             if isinstance(first, NodeTarget) and isinstance(target, NodeTarget):
                 target.compare_changes_since(first, simulation.positions)
-            elif isinstance(first, CellTarget) and isinstance(target, CellTarget):
+            elif isinstance(first, CellTarget) and isinstance(target, CellTarget) and first.measures is target.measures:
                 target.compare_changes_since(first, simulation.positions)
             else:
-                raise ValueError(f"shapes: that at 0 and that at {time:g} min are of different kinds; give both as nodes, or both as cells")
+                raise ValueError(f"shapes: that at 0 and that at {time:g} min are of different kinds; give both as nodes, both as apical "
+                                 "faces, or both as whole cells")
     size = float(np.ptp(simulation.positions, axis=0).max())
     for time, target in zip(times_min, targets):
         apart = target.distance_um(simulation.positions)
         if apart > size:
             raise ValueError(f"shapes[{time:g}]: lies {apart:.3g} µm from the tissue of the scenario, which is {size:.3g} µm long; give "
                              "it in µm and in the axes of the scenario")
-    return times_min, targets
+    return times_min, Residuals(targets, first)
 
 
 class _Kept:
@@ -540,7 +548,7 @@ class _Kept:
         laws = [(field.law, field.length_um) for field in problem.fields]
         for part in (*laws, *problem.times_min, descent.given_spread):
             told_apart.update(repr(part).encode())
-        for target in problem.targets:
+        for target in problem.residuals.targets:
             told_apart.update(target.given().tobytes())
         self.problem = told_apart.hexdigest()
         if self.path.exists():

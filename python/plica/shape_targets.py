@@ -1,8 +1,8 @@
-"""Measured shapes that a run is compared with: positions of nodes, or centres and areas of the apical faces of cells."""
+"""Measured shapes that a run is compared with: positions of nodes, apical faces of cells, or whole cells."""
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Protocol, Union
+from typing import Any, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,18 +10,10 @@ from numpy.typing import NDArray
 from .arguments import mapping_of, numbers, told
 from .polygons import Polygons
 from .results import Frame
+from .whole_cells import Mesh, WholeCells
 
 Array = NDArray[np.float64]
-FITS = "positions of nodes, a Frame, Polygons, or a mapping with centres_um or areas_um2 of cells"
-
-
-class Mesh(Protocol):
-    """What targets need of a simulation."""
-
-    @property
-    def hexahedra(self) -> NDArray[np.int32]: ...
-    @property
-    def hexahedron_cell(self) -> NDArray[np.int32]: ...
+FITS = "positions of nodes, a Frame, Polygons, or a mapping with centres_um, areas_um2, centroids_um or moments_um2 of cells"
 
 
 class ApicalFaces:
@@ -65,6 +57,14 @@ class ApicalFaces:
         np.add.at(gradient, self.facets, by_corner)
         return gradient
 
+    def changed(self, areas: Array, first: Array, of_model: Array) -> Array:
+        """Return areas of the model after the measured change since the first ones; NaN where these are 0."""
+        return np.asarray(areas * of_model / np.where(first > 0, first, np.nan))
+
+    def noise(self, areas: Array, noise_um: float) -> Array:
+        """Return the noise of areas if centres have this one: that of squares whose corners have it."""
+        return np.asarray(noise_um * np.sqrt(2 * np.maximum(areas, noise_um**2)))
+
     def _sum(self, of_facets: Array) -> Array:
         total = np.zeros((self.cells, *of_facets.shape[1:]))
         np.add.at(total, self.cell, of_facets)
@@ -75,111 +75,161 @@ class NodeTarget:
     """Positions of nodes of the same mesh; NaN where they are unknown."""
 
     def __init__(self, positions: Array, noise_um: float) -> None:
-        self.seen, self.noise_um = np.isfinite(positions), noise_um
-        self.positions = np.where(self.seen, positions, 0)
-        self.count = int(self.seen.sum())
+        self.seen, self.noise_um = np.isfinite(positions).ravel(), noise_um
+        self.positions = positions
 
     def compare_changes_since(self, first: NodeTarget, positions: Array) -> None:
         """Compare displacements since a first shape, of which these are the positions in the model."""
-        self.seen &= first.seen
-        self.positions = np.where(self.seen, self.positions + positions - first.positions, 0)
-        self.count = int(self.seen.sum())
+        self.positions = np.where(first.seen.reshape(positions.shape), self.positions + positions - first.positions, self.positions)
 
     def distance_um(self, positions: Array) -> float:
         """Return the root mean square distance of known coordinates."""
-        return float(self.noise_um * (self.misfit(positions)[0] / self.count) ** 0.5)
+        return float(self.noise_um * np.sqrt((self.residuals(positions) ** 2).sum() / max(self.seen.sum(), 1)))
 
     def given(self) -> Array:
         """Return all numbers of the target."""
         return np.append(self.positions, self.noise_um)
 
-    def probe(self, positions: Array, rng: np.random.Generator) -> Array:
-        """Return the gradient by positions of a sum of residuals in units of their noise, with independent normal weights."""
-        return np.where(self.seen, rng.standard_normal(positions.shape), 0) / self.noise_um
+    def residuals(self, positions: Array) -> Array:
+        """Return residuals in units of their noise; 0 where unknown."""
+        return np.where(self.seen, (positions - self.positions).ravel(), 0) / self.noise_um
 
-    def misfit(self, positions: Array) -> tuple[float, Array]:
-        """Return the sum of squared residuals in units of their noise, and its gradient by positions."""
-        apart = np.where(self.seen, positions - self.positions, 0) / self.noise_um
-        return float((apart**2).sum()), 2 * apart / self.noise_um
+    def pull_back(self, positions: Array, by_residuals: Array) -> Array:
+        """Return the gradient by positions of a function of the residuals, from its gradient by them."""
+        return np.where(self.seen, by_residuals, 0).reshape(positions.shape) / self.noise_um
 
 
 class CellTarget:
-    """Centres and areas of the apical faces of cells, on any mesh; NaN where they are unknown."""
+    """Middles and sizes of cells, on any mesh; NaN where they are unknown: centres and areas of apical faces, or centroids and second
+    moments of whole cells."""
 
-    def __init__(self, faces: ApicalFaces, centres: Array, areas: Array, noise_um: float) -> None:
-        self.faces, self.noise_um = faces, noise_um
-        self.seen, self.seen_areas = np.isfinite(centres), np.isfinite(areas)
-        self.centres, self.areas = np.where(self.seen, centres, 0), np.where(self.seen_areas, areas, 0)
-        # A square whose corners have this noise.
-        self.area_noise = noise_um * np.sqrt(2 * np.maximum(self.areas, noise_um**2))
-        self.count = int(self.seen.sum() + self.seen_areas.sum())
+    def __init__(self, measures: Union[ApicalFaces, WholeCells], middles: Array, sizes: Array, noise_um: float) -> None:
+        self.measures, self.middles, self.sizes, self.noise_um = measures, middles, sizes, noise_um
+        self.size_noise = measures.noise(sizes, noise_um)
+
+    @property
+    def seen(self) -> NDArray[np.bool_]:
+        """Which residuals are known."""
+        return np.asarray(np.isfinite(np.concatenate([self.middles.ravel(), self.sizes.ravel()])))
 
     def compare_changes_since(self, first: CellTarget, positions: Array) -> None:
-        """Compare displacements and ratios of areas since a first shape, of which these are the positions in the model."""
-        centres, areas = self.faces.of(positions)
-        self.seen &= first.seen
-        self.seen_areas &= first.seen_areas & (first.areas > 0)
-        self.centres = np.where(self.seen, self.centres + centres - first.centres, 0)
-        self.areas = np.where(self.seen_areas, self.areas * areas / np.where(first.areas > 0, first.areas, 1), 0)
-        self.count = int(self.seen.sum() + self.seen_areas.sum())
+        """Compare changes since a first shape, of which these are the positions in the model."""
+        middles, sizes = self.measures.of(positions)
+        self.middles = np.where(np.isfinite(first.middles), self.middles + middles - first.middles, self.middles)
+        self.sizes = np.where(np.isfinite(first.sizes), self.measures.changed(self.sizes, first.sizes, sizes), self.sizes)
 
     def distance_um(self, positions: Array) -> float:
-        """Return the root mean square distance of known coordinates of centres."""
-        apart = (self.faces.of(positions)[0] - self.centres)[self.seen]
-        return float((apart**2).mean() ** 0.5) if apart.size else 0.0
+        """Return the root mean square distance of known coordinates of middles."""
+        apart = self.measures.of(positions)[0] - self.middles
+        return float(np.sqrt(np.nanmean(apart**2))) if np.isfinite(apart).any() else 0.0
 
     def given(self) -> Array:
         """Return all numbers of the target."""
-        return np.concatenate([self.centres.ravel(), self.areas, [self.noise_um]])
+        return np.concatenate([self.middles.ravel(), self.sizes.ravel(), [self.noise_um]])
 
-    def probe(self, positions: Array, rng: np.random.Generator) -> Array:
-        """Return the gradient by positions of a sum of residuals in units of their noise, with independent normal weights."""
-        self.faces.of(positions)
-        return self.faces.pull_back(np.where(self.seen, rng.standard_normal(self.seen.shape), 0) / self.noise_um,
-                                    np.where(self.seen_areas, rng.standard_normal(self.seen_areas.shape), 0) / self.area_noise)
+    def residuals(self, positions: Array) -> Array:
+        """Return residuals in units of their noise; 0 where unknown."""
+        middles, sizes = self.measures.of(positions)
+        return np.nan_to_num(np.concatenate([((middles - self.middles) / self.noise_um).ravel(), ((sizes - self.sizes) / self.size_noise).ravel()]))
 
-    def misfit(self, positions: Array) -> tuple[float, Array]:
-        """Return the sum of squared residuals in units of their noise, and its gradient by positions."""
-        centres, areas = self.faces.of(positions)
-        apart = np.where(self.seen, centres - self.centres, 0) / self.noise_um
-        wider = np.where(self.seen_areas, areas - self.areas, 0) / self.area_noise
-        gradient = self.faces.pull_back(2 * apart / self.noise_um, 2 * wider / self.area_noise)
-        return float((apart**2).sum() + (wider**2).sum()), gradient
+    def pull_back(self, positions: Array, by_residuals: Array) -> Array:
+        """Return the gradient by positions of a function of the residuals, from its gradient by them."""
+        self.measures.of(positions)
+        by_middles, by_sizes = np.split(np.where(self.seen, by_residuals, 0), [self.middles.size])
+        return self.measures.pull_back((by_middles / self.noise_um).reshape(self.middles.shape),
+                                       np.nan_to_num(by_sizes.reshape(self.sizes.shape) / self.size_noise))
+
+
+class Residuals:
+    """Residuals of a run at several times, in units of their noise.
+
+    Changes since a first shape share its error, which is as large as that of others: a normal offset that is common to all times. With it, the
+    sum of squares is least at the mean over all times, the first with residual 0 among them; without it where the first is unknown.
+    """
+
+    def __init__(self, targets: list[Target], first: Optional[Target]) -> None:
+        self.targets, self.first = targets, first
+
+    def of(self, positions: list[Array]) -> tuple[list[Array], Array]:
+        """Return residuals without the offset at each of the first times, and their sums of squares, in which the offset is shared out."""
+        found = [target.residuals(one) for target, one in zip(self.targets, positions)]
+        found, offset = self._parted(found, 0.0)
+        shared = 0.0 if self.first is None or offset is None else float((offset[self.first.seen] ** 2).sum()) / len(found)
+        return found, np.array([float((one**2).sum()) + shared for one in found])
+
+    def gradients(self, positions: list[Array]) -> Array:
+        """Return the gradient of half the sum of squares by positions at each of the first times."""
+        return self._pulled(positions, self.of(positions)[0])
+
+    def probe(self, positions: list[Array], rng: np.random.Generator) -> Array:
+        """Return gradients by positions of a sum of residuals with normal weights, of which the covariance is the precision of residuals."""
+        weights = [np.where(target.seen, rng.standard_normal(len(target.seen)), 0) for target in self.targets[:len(positions)]]
+        at_first = 0.0 if self.first is None else np.where(self.first.seen, rng.standard_normal(len(weights[0])), 0)
+        return self._pulled(positions, self._parted(weights, at_first)[0])
+
+    def counts(self, times: int) -> Array:
+        """Return the number of residuals at each of the first times."""
+        seen = np.array([target.seen.sum() for target in self.targets[:times]])
+        if self.first is None:
+            return seen
+        free = np.any([target.seen & ~self.first.seen for target in self.targets[:times]], axis=0)  # offsets that are unknown
+        return seen - int(free.sum()) / times
+
+    def _parted(self, values: list[Array], at_first: Union[float, Array]) -> tuple[list[Array], Union[None, Array]]:
+        """Return values without their mean over times, the first among them, and this mean."""
+        if self.first is None:
+            return values, None
+        seen = [target.seen for target in self.targets[:len(values)]]
+        offset = (at_first + np.sum(values, axis=0)) / np.maximum(np.sum([self.first.seen, *seen], axis=0), 1)
+        return [np.where(known, one - offset, 0) for known, one in zip(seen, values)], offset
+
+    def _pulled(self, positions: list[Array], by_residuals: list[Array]) -> Array:
+        return np.stack([target.pull_back(*both) for target, *both in zip(self.targets, positions, by_residuals)])
 
 
 Target = Union[NodeTarget, CellTarget]
+APICAL, WHOLE = ("centres_um", "areas_um2"), ("centroids_um", "moments_um2")
 
 
-def target_of(value: Any, what: str, faces: ApicalFaces, nodes: int, compared: NDArray[np.int32], noise_um: float) -> Target:
+def target_of(value: Any, what: str, faces: ApicalFaces, whole: WholeCells, nodes: int, compared: NDArray[np.int32],
+              noise_um: float) -> Target:
     """Return a target. ValueError, with `what`, if its shape does not match the tissue."""
     if isinstance(value, Frame):
         value = value.polygons("apical")
     if isinstance(value, Polygons):
-        centres, areas = centres_and_areas(value)
-    elif isinstance(value, Mapping):
+        return _cell_target(what, faces, dict(zip(APICAL, centres_and_areas(value))), noise_um)
+    if isinstance(value, Mapping):
         given = mapping_of(value, what, FITS)
-        unknown = sorted(set(given) - {"centres_um", "areas_um2"})
+        unknown = sorted(set(given) - {*APICAL, *WHOLE})
         if unknown or not given:
-            raise ValueError(f"{what}: {', '.join(unknown) or 'is empty'}; give centres_um, areas_um2 or both")
-        centres = numbers(given.get("centres_um", np.full((faces.cells, 3), np.nan)), what, FITS, masked_is_none=True)
-        areas = numbers(given.get("areas_um2", np.full(faces.cells, np.nan)), what, FITS, masked_is_none=True)
-    else:
-        positions = numbers(value, what, FITS, masked_is_none=True)
-        if positions.shape != (nodes, 3):
-            raise ValueError(f"{what}: {told(positions)} for a tissue of {nodes} nodes; give positions of shape ({nodes}, 3), NaN "
-                             "where unknown, or centres_um and areas_um2 of cells if the mesh differs")
-        unread = np.ones(nodes, dtype=bool)
-        unread[compared] = False
-        positions[unread] = np.nan
-        return _seen(NodeTarget(positions, noise_um), what)
-    if centres.shape != (faces.cells, 3) or areas.shape != (faces.cells,):
-        raise ValueError(f"{what}: {len(centres)} centres and {len(areas)} areas for {faces.cells} cells; give one per cell of the "
-                         "scenario, in the order of cell_data, NaN where unknown")
-    return _seen(CellTarget(faces, centres, areas, noise_um), what)
+            raise ValueError(f"{what}: {', '.join(unknown) or 'is empty'}; give centres_um, areas_um2 or both, or centroids_um, moments_um2 or both")
+        if {*APICAL} & {*given} and {*WHOLE} & {*given}:
+            raise ValueError(f"{what}: has values of apical faces and of whole cells; give centres_um and areas_um2, or centroids_um and moments_um2")
+        return _cell_target(what, whole if {*WHOLE} & {*given} else faces, given, noise_um)
+    positions = numbers(value, what, FITS, masked_is_none=True)
+    if positions.shape != (nodes, 3):
+        raise ValueError(f"{what}: {told(positions)} for a tissue of {nodes} nodes; give positions of shape ({nodes}, 3), NaN "
+                         "where unknown, or values of cells if the mesh differs")
+    unread = np.ones(nodes, dtype=bool)
+    unread[compared] = False
+    positions[unread] = np.nan
+    return _seen(NodeTarget(positions, noise_um), what)
+
+
+def _cell_target(what: str, measures: Union[ApicalFaces, WholeCells], given: Mapping[str, Any], noise_um: float) -> Target:
+    names = APICAL if isinstance(measures, ApicalFaces) else WHOLE
+    cells = measures.cells
+    values = []
+    for name, shape in zip(names, ((cells, 3), (cells,) if isinstance(measures, ApicalFaces) else (cells, 6))):
+        values.append(numbers(given.get(name, np.full(shape, np.nan)), what, FITS, masked_is_none=True))
+        if values[-1].shape != shape:
+            raise ValueError(f"{what}: {name} of shape {values[-1].shape} for {cells} cells; give {shape}, one row per cell of the scenario, in "
+                             "the order of cell_data, NaN where unknown")
+    return _seen(CellTarget(measures, values[0], values[1], noise_um), what)
 
 
 def _seen(target: Target, what: str) -> Target:
-    if target.count == 0:
+    if not target.seen.any():
         raise ValueError(f"{what}: has no finite value on the surface that is compared; give positions of some nodes or cells")
     return target
 

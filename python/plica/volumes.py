@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Iterable
-from typing import Any, Optional, Union
+from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +16,7 @@ from .polygons import check_keep
 from .voxel_labels import Labels, numbered_volume
 from .voxel_layer import Layer, layer_of
 from .voxel_repair import repaired_labels
-from .voxel_sides import FIRST, SECOND, Floats, sides_of
+from .voxel_sides import FIRST, SECOND, Floats, Sides, sides_of
 from .voxel_surfaces import RIM, Integers, components, face_places, steps_of
 
 __all__ = ["tissue_of_labels"]
@@ -86,6 +86,23 @@ def tissue_of_labels(
     >>> tissue = plica.tissue_of_labels("cyst.tif", (1, 0.3, 0.3), apical="inside")  # doctest: +SKIP
     >>> simulation = plica.Simulation(plica.Scenario({"format": 1}, tissue=tissue))  # doctest: +SKIP
     """
+    tissue = measured_volume(volume, spacing_um, apical, background, gap_px, keep_cut, keep).tissue
+    for remark in tissue.remarks:
+        warnings.warn(f"volume: {remark}", stacklevel=2)
+    return tissue
+
+
+class MeasuredVolume(NamedTuple):
+    """A tissue, the repaired labels that it is made of, and their free faces, of which those on one side are apical."""
+
+    tissue: LabelledTissue
+    labels: Labels
+    sides: Sides
+    apical: int
+
+
+def measured_volume(volume: Any, spacing_um: Any, apical: Any, background: int, gap_px: float, keep_cut: bool, keep: str) -> MeasuredVolume:
+    """Return the tissue of a volume, with what it is made of; arguments as for `tissue_of_labels`."""
     if isinstance(volume, (str, os.PathLike)):
         volume, found = read_labels(volume)
         spacing_um = found if spacing_um is None else spacing_um
@@ -109,9 +126,7 @@ def tissue_of_labels(
     _tell(tissue, layer, labels, volumes, kept)
     tissue.remarks = labels.remarks
     tissue.quality = measured_quality(tissue, layer, labels, spacing, contacts, kept, first_is_apical)
-    for remark in tissue.remarks:
-        warnings.warn(f"volume: {remark}", stacklevel=2)
-    return tissue
+    return MeasuredVolume(tissue, labels, sides, FIRST if first_is_apical else SECOND)
 
 
 def _marker(apical: Any, volume: Any) -> NDArray[Any]:

@@ -3,7 +3,8 @@ import numpy as np
 import plica
 import pytest
 from plica.knots import divided
-from plica.shape_targets import ApicalFaces, CellTarget, target_of
+from plica.shape_targets import ApicalFaces, CellTarget, NodeTarget, Residuals, target_of
+from plica.whole_cells import WholeCells
 
 LAW = "cortex.apical"
 BLOCK = plica.Scenario({
@@ -152,17 +153,58 @@ def test_a_jump_stays_a_jump():
 
 def test_gradient_of_cells_agrees_with_differences():
     simulation, faces = faces_of(BLOCK)
+    whole = WholeCells(simulation, 16)
+    assert faces.of(simulation.positions)[1] == pytest.approx(simulation.cell_data["apical_area_um2"], rel=1e-12)
     rng = np.random.default_rng(0)
-    centres, areas = faces.of(simulation.positions)
-    assert areas == pytest.approx(simulation.cell_data["apical_area_um2"], rel=1e-12)
-    areas[3] = centres[5] = np.nan
-    target = CellTarget(faces, centres + 0.1, 1.1 * areas, 0.5)
-    assert target.count == 16 * 4 - 4
     positions = simulation.positions + 0.3 * rng.normal(size=simulation.positions.shape)
     direction = rng.normal(size=positions.shape)
-    slope = (target.misfit(positions)[1] * direction).sum()
-    ends = [target.misfit(positions + sign * 1e-5 * direction)[0] for sign in (1, -1)]
-    assert slope == pytest.approx((ends[0] - ends[1]) / 2e-5, rel=1e-8)
+    for measures, known in ((faces, 16 * 4 - 4), (whole, 16 * 9 - 9)):
+        middles, sizes = measures.of(simulation.positions)
+        sizes[3] = middles[5] = np.nan
+        target = CellTarget(measures, middles + 0.1, 1.1 * sizes, 0.5)
+        assert target.seen.sum() == known
+        for first in (None, CellTarget(measures, middles, np.where(sizes > 2, sizes, np.nan), 0.4)):
+            residuals = Residuals([target, CellTarget(measures, middles, sizes, 0.4)], first)
+            both = [positions, simulation.positions]
+            slope = (residuals.gradients(both)[0] * direction).sum()
+            ends = [residuals.of([positions + sign * 1e-5 * direction, both[1]])[1].sum() for sign in (1, -1)]
+            assert slope == pytest.approx((ends[0] - ends[1]) / 4e-5, rel=1e-8)
+
+
+@pytest.mark.parametrize("known, weights", [(True, [[2, 0, -1], [0, 0, 0], [-1, 0, 2]]), (False, [[1.5, 0, -1.5], [0, 0, 0], [-1.5, 0, 1.5]])])
+def test_a_first_shape_shares_its_noise(known, weights):
+    rng = np.random.default_rng(0)
+    first, *later = 0.1 * rng.normal(size=(4, 40_000, 3))
+    targets = [NodeTarget(one - known * first, 0.1) for one in later]
+    targets[1].seen[:] = False
+    begin = NodeTarget(first if known else np.full_like(first, np.nan), 0.1)
+    still = [np.zeros((40_000, 3))] * 3
+    residuals = Residuals(targets, begin)
+    counts = residuals.counts(3)
+    assert residuals.of(still)[1].sum() == pytest.approx(counts.sum(), rel=0.02) and counts.sum() == 120_000 * (2 if known else 1)
+    probes = np.stack([one.ravel() for one in residuals.probe(still, rng)]) * 0.1
+    assert np.cov(probes) == pytest.approx(np.array(weights) / 3, abs=0.02)
+
+
+def test_whole_cells_are_bricks_and_turn():
+    simulation = plica.Simulation(BLOCK)
+    whole = WholeCells(simulation, 16)
+    centroids, moments = whole.of(simulation.positions)
+    assert centroids == pytest.approx(np.stack([simulation.cell_data[f"{axis}_um"] for axis in "xyz"], axis=1), abs=1e-9)
+    assert moments == pytest.approx(np.tile(np.array([64, 64, 100, 0, 0, 0]) / 12, (16, 1)), abs=1e-9)
+    turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
+    turn *= np.linalg.det(turn)
+    turned = turn @ np.diag([64, 64, 100]) @ turn.T / 12
+    assert whole.of(simulation.positions @ turn.T)[1] == pytest.approx(
+        np.tile(turned[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]], (16, 1)), abs=1e-9)
+
+
+def test_tensions_follow_from_whole_cells(block_shape):
+    truth, shape = block_shape
+    whole = WholeCells(plica.Simulation(BLOCK), 16)
+    values = [dict(zip(("centroids_um", "moments_um2"), whole.of(where))) for where in (plica.Simulation(BLOCK).positions, shape)]
+    found = plica.infer(BLOCK, dict(enumerate(values)), of=LAW, noise_um=0.002)
+    assert np.log(found.factors[LAW]) == pytest.approx(np.log(truth / truth.mean()), abs=0.1)
 
 
 def test_polygons_are_centres_and_areas(tmp_path):
@@ -171,16 +213,19 @@ def test_polygons_are_centres_and_areas(tmp_path):
     tape = plica.record(BLOCK)
     centres, areas = faces.of(tape.positions())
     for shape in (frame, frame.polygons("apical")):
-        target = target_of(shape, "shape", faces, len(tape.positions()), np.arange(4), 0.1)
-        assert target.centres == pytest.approx(centres, abs=1e-4) and target.areas == pytest.approx(areas, rel=1e-4)
+        target = target_of(shape, "shape", faces, WholeCells(simulation, 16), len(tape.positions()), np.arange(4), 0.1)
+        assert target.middles == pytest.approx(centres, abs=1e-4) and target.sizes == pytest.approx(areas, rel=1e-4)
 
 
 WRONG = [
     (dict(shapes={}), "shapes: a value of type dict; give a mapping of times in minutes to shapes"),
     (dict(shapes={0: np.zeros((50, 3))}), "shapes: has no time after 0"),
     (dict(shapes={1: np.zeros((7, 3))}), "shapes[1]: an array of float64 and shape (7, 3) for a tissue of 50 nodes; give positions"),
-    (dict(shapes={1: {"areas_um2": np.ones(3)}}), "3 areas for 16 cells; give one per cell"),
-    (dict(shapes={1: {"area": np.ones(16)}}), "shapes[1]: area; give centres_um, areas_um2 or both"),
+    (dict(shapes={1: {"areas_um2": np.ones(3)}}), "areas_um2 of shape (3,) for 16 cells; give (16,), one row per cell"),
+    (dict(shapes={1: {"moments_um2": np.ones((16, 3, 3))}}), "moments_um2 of shape (16, 3, 3) for 16 cells; give (16, 6)"),
+    (dict(shapes={1: {"area": np.ones(16)}}), "shapes[1]: area; give centres_um, areas_um2 or both, or centroids_um"),
+    (dict(shapes={1: {"areas_um2": np.ones(16), "centroids_um": np.ones((16, 3))}}), "has values of apical faces and of whole cells"),
+    (dict(shapes={0: {"areas_um2": np.ones(16)}, 1: {"centroids_um": np.ones((16, 3))}}), "are of different kinds; give both as nodes"),
     (dict(shapes={1: np.full((50, 3), np.nan)}), "shapes[1]: has no finite value"),
     (dict(shapes={1: np.full((50, 3), 1e4)}), "µm from the tissue of the scenario, which is 32 µm long"),
     (dict(shapes={2: np.zeros((50, 3))}), "shapes: 2 min is after the end of the run, 1 min"),

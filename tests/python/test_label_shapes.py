@@ -6,6 +6,7 @@ import numpy as np
 import plica
 import pytest
 from drawn_tissues import Cyst
+from plica.whole_cells import label_moments
 
 spatial = pytest.importorskip("scipy.spatial")
 draw = pytest.importorskip("skimage.draw")
@@ -21,9 +22,9 @@ def places(time):
 
 
 @functools.cache
-def drawn():
+def drawn(speed=1):
     pixels = np.indices((SIDE, SIDE)).reshape(2, -1).T
-    movie = [1 + spatial.cKDTree(places(time)).query(pixels)[1].reshape(SIDE, SIDE) for time in TIMES]
+    movie = [1 + spatial.cKDTree(places(speed * time)).query(pixels)[1].reshape(SIDE, SIDE) for time in TIMES]
     cells = plica.polygons_of_labels(movie[0], PIXEL_UM)
     return movie, cells
 
@@ -93,6 +94,34 @@ def test_a_wrong_first_frame_leaves_later_ones():
     assert shapes.doubtful[0, cell] and not shapes.doubtful[1:, cell].any() and shapes.doubtful.sum() == 1
 
 
+def test_missing_cells_make_no_others_doubtful():
+    movie, cells = drawn(speed=4)
+    later = [image.copy() for image in movie]
+    later[3][np.isin(later[3], np.unique(movie[0][:, 5 * SIDE // 8:]))] = 0
+    shapes = shapes_of(later, cells)
+    assert np.isnan(shapes.areas_um2[3]).sum() > 5 and not shapes.doubtful.any()
+
+
+def test_a_first_label_of_two_cells_is_left_out():
+    movie, cells = drawn()
+    label, other = shapes_of(movie, cells).labels[5:7]
+    first = np.where(movie[0] == other, label, movie[0])
+    shapes = shapes_of([first, *movie[1:]], plica.polygons_of_labels(first, PIXEL_UM))
+    cell = int(np.flatnonzero(shapes.labels == label)[0])
+    assert all(np.isnan(shapes[time]["areas_um2"][cell]) for time in TIMES) and np.isfinite(shapes[3]["areas_um2"]).sum() == len(shapes.labels) - 1
+
+
+def test_moments_of_labels():
+    numbers = np.random.default_rng(1).integers(0, 4, (5, 6, 7))
+    spacing, origin = np.array([0.5, 0.3, 0.2]), np.array([1.0, 2, 3])
+    volumes, centroids, moments = label_moments(numbers, 2, spacing, origin)
+    for cell in (0, 1):
+        places = (np.argwhere(numbers == cell + 1) * spacing + origin)[:, ::-1]
+        spread = np.cov(places.T, bias=True) + np.diag(spacing[::-1]**2) / 12
+        assert volumes[cell] == pytest.approx(len(places) * 0.03) and centroids[cell] == pytest.approx(places.mean(axis=0))
+        assert moments[cell] == pytest.approx(spread[[0, 1, 2, 0, 1, 0], [0, 1, 2, 1, 2, 2]])
+
+
 def test_volumes():
     drawing = Cyst(60, axes=(12, 12, 12), height=5, seed=2)
     labels, _ = drawing.labels((0.5, 0.5, 0.5))
@@ -101,8 +130,11 @@ def test_volumes():
         warnings.simplefilter("ignore")
         tissue = plica.tissue_of_labels(labels, (0.5, 0.5, 0.5), apical="inside")
         shapes = plica.shapes_of_labels({0: labels, 1: shifted}, (0.5, 0.5, 0.5), cells=tissue, apical="inside")
-    moved = shapes[1]["centres_um"] - shapes[0]["centres_um"]
-    assert moved == pytest.approx(np.tile([0.5, 0, 0], (len(tissue.cells), 1)), abs=1e-9)
+    for moved in (shapes.centres_um[1] - shapes.centres_um[0], shapes[1]["centroids_um"] - shapes[0]["centroids_um"]):
+        assert moved == pytest.approx(np.tile([0.5, 0, 0], (len(tissue.cells), 1)), abs=1e-9)
+    assert shapes[1]["moments_um2"] == pytest.approx(shapes[0]["moments_um2"]) and list(shapes[1]) == ["centroids_um", "moments_um2"]
+    sizes = np.bincount(labels.ravel())[shapes.labels] / 8  # before repairs
+    assert shapes.volumes_um3[0] == pytest.approx(sizes, rel=0.02)
     assert shapes.corners_um[0] == pytest.approx(tissue.apical) and shapes.corners_um[1] == pytest.approx(tissue.apical + [0.5, 0, 0])
     assert shapes.heights_um[1] == pytest.approx(tissue.heights) and len(shapes.rim) == 0
     assert shapes.noise_um == 0.25 and "noise_um is half a pixel" in shapes.remarks[-1]
