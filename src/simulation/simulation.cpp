@@ -282,7 +282,9 @@ void Simulation::adopt(const TissueChange& change) {
       memory_of(*model_, now_.changes ? inherited(change, now_.changes->origin) : change.origin));
   observer_.follow_division(model_->tissue, change);
   follow(change, now_.outside_arrays);
+  const int steps = steps_with_factor_;
   renew_stepper();
+  steps_with_factor_ = steps;  // or runs with many events would not become resumable
   for (SimulationListener* listener : listeners_) listener->cells_divided(change);
 }
 

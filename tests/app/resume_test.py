@@ -12,19 +12,28 @@ import time
 from pathlib import Path
 
 import support
-from resuming import DIVIDING, LOST, Resuming
+from resuming import CHANGING, DIVIDING, LOST, Resuming
 from support import BLOCK, CHECKPOINTS, SPHERE, rows_in, running, tree
 
 KILLS, SEED, KILLS_IN_A_ROW = 8, 1, 8
 
 
 class Kills(Resuming):
-    def test_killed_runs_go_on_to_the_same_bits(self):
+    def test_killed_runs_with_divisions_go_on_to_the_same_bits(self):
+        self.check_kills(DIVIDING)
+
+    def test_killed_runs_of_tissues_that_change_go_on_to_the_same_bits(self):
+        self.check_kills([self.write(CHANGING)])
+        events = self.summary()
+        for key in ("exchanges", "extruded_cells", "divisions"):
+            self.assertGreater(events[key], 0, key)
+
+    def check_kills(self, scenario):
         """In chains: a run is killed, goes on, is killed further on, and so on to its end. The kills of all chains lie
         evenly over the steps; one in ten falls on the start of the program instead, while it reads and cuts back."""
         chance = random.Random(SEED)
         began = time.monotonic()
-        whole = self.whole_run(DIVIDING)
+        whole = self.whole_run(scenario)
         seconds = time.monotonic() - began
         steps = rows_in(self.folder / "whole")
         chains = max(1, KILLS // KILLS_IN_A_ROW)
@@ -36,7 +45,7 @@ class Kills(Resuming):
             for place in places[chain::chains]:
                 at_start = chance.random() < 0.1
                 delay = chance.uniform(0, 0.3) if at_start else chance.uniform(0, 2 * seconds / steps)
-                process = self.after_rows(DIVIDING, 0 if at_start else int(place), signal.SIGKILL, delay)
+                process = self.after_rows(scenario, 0 if at_start else int(place), signal.SIGKILL, delay)
                 if process.returncode != -signal.SIGKILL:
                     self.assertEqual(process.returncode, 0, process.stderr)  # it came to its end before
                     continue
@@ -44,7 +53,7 @@ class Kills(Resuming):
                 known = rows_in(self.out)
                 done, early = done + 1, early + at_start
                 steps_hit.add(known)
-            lost_rows = max(lost_rows, self.rows_lost(self.resumed(DIVIDING), known))
+            lost_rows = max(lost_rows, self.rows_lost(self.resumed(scenario), known))
             self.assert_same(self.out, whole)
             self.assertEqual([], [path for path in self.out.rglob("*.part")], "left-overs")
         print(f"{done} kills in {chains} chains of a run of {steps} steps and {seconds:.1f} s, seed {SEED}: {early} at the start "

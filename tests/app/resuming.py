@@ -11,6 +11,83 @@ for setting in ("division.floor.at_min=0.2", "division.floor.growth_min=0.3", "d
                 "division.borders.growth_min=0.3", "time.end_min=1.5", "time.tolerance_um=0.02", "output.frame_every_s=5"):
     DIVIDING += ["--set", setting]
 
+# Cells that grow, exchange neighbours, divide, leave and signal: a cell leaves after 15 s; 70 steps or so.
+CHANGING = """format = 1
+[embryo]
+shape = "sheet"
+length_um = 18
+width_um = 18
+cell_height_um = 6
+cell_count = 20
+seed = 3
+[region.leaving]
+x_um = [-3, 1]
+y_um = [-3, 3]
+[region.right]
+x_um = [4, 20]
+[elasticity]
+model = "neo-hookean"
+young_modulus_Pa = 200
+poisson_ratio = 0.2
+corner_barrier_Pa = 40
+relaxation_min = 0.5
+[dynamics]
+surface_drag_Pa_s_per_um = 10
+[exchange]
+below_um = 0.8
+new_length_um = 0.9
+again_after_s = 1
+[growth.leaving]
+region = "leaving"
+final_ratio = 0.05
+in_plane = 1
+program = { time_s = [0, 15], activity = [1, 1] }
+[extrusion.leaving]
+region = "leaving"
+apical_area_below_um2 = 12
+[division.right]
+region = "right"
+at_s = 8
+growth_s = 4
+daughter_volume_ratio = 0.6
+[signal.u]
+diffusion_um2_per_min = 20
+initial = 0.5
+initial_spread = 0.3
+reaction = "k * u * (1 - u)"
+constants = { k = 1 }
+[cortex.lateral]
+region = "all"
+faces = "lateral"
+tension_mN_per_m = 0.8
+program = { time_s = [0, 5], activity = [0, 1] }
+noise = { spread = 0.4, correlation_s = 20 }
+[cortex.apical]
+region = "all"
+tension_mN_per_m = 0.6
+program = { time_s = [0, 5], activity = [0, 1] }
+[cortex.following]
+region = "all"
+tension_mN_per_m = 0.2
+follow = { signal = "u", from = 0.2, to = 0.8 }
+[cortex.basal]
+region = "all"
+faces = "basal"
+tension_mN_per_m = 0.6
+program = { time_s = [0, 5], activity = [0, 1] }
+[time]
+end_s = 40
+first_step_s = 0.5
+max_step_s = 2
+tolerance_um = 0.3
+[stop]
+at_equilibrium = false
+[measure]
+sets = ["neighbours"]
+[output]
+frame_every_s = 5
+"""
+
 LOST = range(7)  # rows that a kill may cost: five steps in a row with a factor, and one that is being recorded
 
 
