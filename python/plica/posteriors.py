@@ -294,7 +294,7 @@ def _by_gradients(scenario: Scenario, keys: Mapping[str, tuple[float, float]], t
     best = fit(start, targets, of=keys, progress=progress)
     # In the unit cube of the prior, whose variance is 1/12 along what targets leave open.
     slopes = best.jacobian * [(one.high - one.low) / (best.values[key] if one.low > 0 else 1.0) for key, one in ranges.items()]
-    covariance = np.linalg.inv(slopes.T @ slopes + 12 * np.eye(len(keys)))
+    covariance = np.asarray(np.linalg.inv(slopes.T @ slopes + 12 * np.eye(len(keys))), dtype=np.float64)
     middle = np.array([one.to_unit(np.array([best.values[key]]))[0] for key, one in ranges.items()])
     places, log_proposal = _about(middle, covariance, runs, np.random.default_rng(seed))
     values = {key: {"values": one.from_unit(places[:, k]).tolist()} for k, (key, one) in enumerate(ranges.items())}

@@ -5,6 +5,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -417,14 +418,20 @@ def check_gradient(
 
     if by is None:
         keys = [of] if isinstance(of, str) else texts_of(of, "of")
-        return [_checked(key, float(slope), changes, lambda part, key=key: value(tape._strengths, *base._changed(key, part)), base._value(key))
-                for key, slope in zip(keys, slopes)]
+
+        def by_key(key: str, part: float) -> float:
+            return value(tape._strengths, *base._changed(key, part))
+
+        return [_checked(key, float(slope), changes, partial(by_key, key), base._value(key)) for key, slope in zip(keys, slopes)]
     law = text_of(of, "of")
     at = np.array(tape._strengths.get(law, np.ones(len(slopes))))
     largest = int(np.argmax(np.abs(slopes)))
     directions = {"a random direction": np.random.default_rng(0).uniform(0, 1, len(slopes)), f"cell {largest}": np.eye(len(slopes))[largest]}
-    return [_checked(f"{law}, {name}", float(direction @ slopes), changes, lambda part, direction=direction: value(
-                {**tape._strengths, law: (at + part * direction).tolist()}, tape._scenario, tape._energies), 1.0)
+
+    def along(direction: Array, part: float) -> float:
+        return value({**tape._strengths, law: (at + part * direction).tolist()}, tape._scenario, tape._energies)
+
+    return [_checked(f"{law}, {name}", float(direction @ slopes), changes, partial(along, direction), 1.0)
             for name, direction in directions.items()]
 
 
