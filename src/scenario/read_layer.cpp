@@ -32,6 +32,14 @@ std::string in_toml(const toml::node& node) {
   return stream.str();
 }
 
+// Keys of a table inside another.
+std::vector<std::string_view> keys_below(std::string_view table, const std::string& inner) {
+  std::vector<std::string_view> keys;
+  for (const KeyRow& row : rows_of(table))
+    if (row.key.starts_with(inner + ".")) keys.push_back(row.key.substr(inner.size() + 1));
+  return keys;
+}
+
 Problem wrong_type(const toml::node& node) { return fmt::format("{} has the wrong type", in_toml(node)); }
 
 Problem read(const toml::node& node, const KeyRow& row, int& target) {
@@ -307,7 +315,7 @@ class Reader {
       if (row.key == row_key) return read_value(row, name, path, written, key, node);
       if (row.key.starts_with(row_key + ".")) {
         const toml::table* inner =
-            as_table(node, key, written, row_key == "program" ? "a table of times and activities" : "a table");
+            as_table(node, key, written, fmt::format("a table of {}", fmt::join(keys_below(table, row_key), ", ")));
         if (inner == nullptr) return;
         note(written, written, key, nullptr);
         return read_keys(table, name, row_key + ".", *inner);

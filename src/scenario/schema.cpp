@@ -67,6 +67,7 @@ std::string KeyRow::expected() const {
   const std::string range = allowed.text();
   if (type == "word") return "one of: " + range;
   if (type == "list of words") return "a list of: " + range;
+  if (type == "text" && key.ends_with("region")) return "\"all\", or to the name of another region";
   const bool plain = type == "text" || type == "true or false" || type == "[low, high]" || type == "3 integers";
   std::string noun = type == "text" ? "a text" : plain ? type : (type == "integer" ? "an " : "a ") + type;
   if (range.empty()) return noun;

@@ -330,7 +330,8 @@ RunStatus Simulation::run_until(double time_s) {
 bool Simulation::step(double until_s) {
   if (has_come(until_s, now_.state.time_s)) return false;
   if (!has_begun_) {
-    divide(due_divisions(solved(), now_.state, controls_.divisions));
+    if (now_.state.divided_until_s != now_.state.time_s)  // else done: an exchange may have made more of them due
+      divide(due_divisions(solved(), now_.state, controls_.divisions));
     exchange();
   }
   has_begun_ = true;

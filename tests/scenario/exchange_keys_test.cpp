@@ -34,7 +34,7 @@ TEST(ExchangeKeys, SayWhatWouldBeRight) {
        "14: time.scheme: the paper's algorithm is not possible beside [exchange]; set time.scheme to \"newton\" and "
        "volume.method to \"coupled\", or remove [exchange]"},
       {soft_sheet + "[extrusion.a]\nregion = \"all\"\napical_area_below_um2 = 5",
-       "9: extrusion.a: cells lose neighbours only by exchange; add [exchange] with below_um"},
+       "9: extrusion.a: cells lose neighbours only by exchange; set exchange.below_um, for example to 0.35"},
       {exchanging + "[extrusion.a]\nregion = \"all\"",
        "11: extrusion.a.apical_area_below_um2: is missing; set apical_area_below_um2 to a number > 0"},
       {lateral_cortex + "tension_mN_per_m = 1\nnoise = { spread = 0.5 }",
@@ -45,6 +45,8 @@ TEST(ExchangeKeys, SayWhatWouldBeRight) {
        "5: cortex.a.direction.axis: is missing; set axis to \"along\" or \"across\""},
       {lateral_cortex + "tension_mN_per_m = 1\ndirection = { axis = \"along\" }",
        "5: cortex.a.direction: has no effect, since strongest equals weakest; set strongest above weakest"},
+      {lateral_cortex + "tension_mN_per_m = 1\ndirection = { axis = \"along\", strongest = -1 }",
+       "5: cortex.a.direction.strongest: -1 is out of range; set strongest to a number >= 0"},
       {lateral_cortex + "stiffness_mN_per_m = 1\nnoise = { spread = 0.5, correlation_s = 5 }",
        "5: cortex.a.noise: is not used without tension_mN_per_m; remove it, or set tension_mN_per_m"},
       {apical_cortex + "noise = { spread = 0.5, correlation_s = 60 }",

@@ -19,7 +19,8 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
       {cortex + "stiffness_mN_per_m = 1\nstiffness_program = { time_min = [0, 1], activity = [1] }",
        "4: cortex.a.stiffness_program.activity: has length 1 for 2 times; set activity to as many values as times"},
       {"[cortex.apical]\nregion = \"all\"\ntension_mN_per_m = 1\n[cortex.apicl]\ntension_mN_per_m = 2",
-       "4: cortex.apicl.region: is missing; set region to a text, or rename the table to cortex.apical (nearest "
+       "4: cortex.apicl.region: is missing; set region to \"all\", or to the name of another region, or rename the "
+       "table to cortex.apical (nearest "
        "match)"},
       {"[cortex.a]\nregion = \"mesoderm\"\ntension_mN_per_m = 1",
        "2: cortex.a.region: region \"mesoderm\" does not exist; use one of: all"},
@@ -186,7 +187,8 @@ TEST(InteriorKeys, ModuliByRegionSayWhatWouldBeRight) {
   const WrongScenarios cases = {
       {soft,
        "1: elasticity.soft: has no effect; set young_modulus_Pa, poisson_ratio, relaxation_min, profile or variation"},
-      {"[elasticity.soft]\nyoung_modulus_Pa = 5", "1: elasticity.soft.region: is missing; set region to a text"},
+      {"[elasticity.soft]\nyoung_modulus_Pa = 5",
+       "1: elasticity.soft.region: is missing; set region to \"all\", or to the name of another region"},
       {"[elasticity]\nmodel = \"neo-hookean\"\n" + soft + "poisson_ratio = -0.2",
        "5: elasticity.soft.poisson_ratio: -0.2 is below 0, the minimum with model \"neo-hookean\"; set poisson_ratio "
        "to a number >= 0, or model to \"corotational\""},

@@ -95,12 +95,14 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {"[region.a]\nx_um = [2, 1]", "2: region.a.x_um: low is above high; set x_um to [low, high]"},
       {"[region.a]\nids = []", "2: region.a.ids: the list is empty; set ids to a list of integers >= 0"},
       {"embryo = 3", "1: embryo: 3 is not a table; write a table"},
-      {"[hold.a]\nregion = \"\"", "2: hold.a.region: the text is empty; set region to a text"},
+      {"[hold.a]\nregion = \"\"",
+       "2: hold.a.region: the text is empty; set region to \"all\", or to the name of another region"},
       {"embryo.length_um = -1\nregion.a.face = \"top\"",
        "1: embryo.length_um: -1 is out of range; set length_um to a number > 0\n2: region.a.face: \"top\" is unknown; "
        "set face to one of: ventral | dorsal | left | right | anterior | posterior"},
       {"[[hold]]\nregion = \"all\"", "1: hold: a list is not a table; write a table"},
-      {program + "program = 1", "3: contraction.a.program: 1 is not a table; write a table of times and activities"},
+      {program + "program = 1",
+       "3: contraction.a.program: 1 is not a table; write a table of time_s, time_min, activity"},
       // The embryo as a whole.
       {"[embryo]\nlength_um = 200",
        "2: embryo.length_um: 200 is less than the diameter, 280; set length_um to at least diameter_um"},
@@ -170,7 +172,8 @@ TEST(LoadScenario, NamesWhatIsWrongAndWhatWouldBeRight) {
       {program + "variation = { sead = 2 }",
        "3: contraction.a.variation.sead: unknown key; use \"variation.seed\" (nearest match)"},
       // Regions.
-      {"[contraction.a]\nstiffness_nN_per_um = 1", "1: contraction.a.region: is missing; set region to a text"},
+      {"[contraction.a]\nstiffness_nN_per_um = 1",
+       "1: contraction.a.region: is missing; set region to \"all\", or to the name of another region"},
       {"[region.furrow]\nface = \"ventral\"\n[contraction.a]\nregion = \"furow\"",
        "4: contraction.a.region: region \"furow\" does not exist; use \"furrow\" (nearest match)"},
       {"[hold.a]\nregion = \"b\"", "2: hold.a.region: region \"b\" does not exist; use one of: all"},

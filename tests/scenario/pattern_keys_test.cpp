@@ -280,7 +280,8 @@ TEST(AblationKeys, CutAtAHeight) {
 TEST(AblationKeys, WhatIsWrongIsSaid) {
   const auto cut = [](const std::string& keys) { return layered_block + "[ablation.cut]\n" + keys; };
   const WrongScenarios cases = {
-      {cut("at_s = 5"), "test.toml:18: ablation.cut.region: is missing; set region to a text"},
+      {cut("at_s = 5"),
+       "test.toml:18: ablation.cut.region: is missing; set region to \"all\", or to the name of another region"},
       {cut("region = \"second\"\nat_s = 5"),
        "test.toml:19: ablation.cut.region: region \"second\" does not exist; use one of"},
       {cut("region = \"first\""), "test.toml:18: ablation.cut: no start time; set at_min or at_s (0 = from the start)"},

@@ -247,7 +247,10 @@ TEST(RandomCombinations, AreRefusedByNameOrRun) {
   const char* begin = std::getenv("PLICA_RANDOM_FIRST");
   const int first = begin ? std::atoi(begin) : 1;
   Counts counts;
-  for (int seed = first; seed < first + count; ++seed) {
+  std::vector<int> seeds(static_cast<std::size_t>(count));
+  std::iota(seeds.begin(), seeds.end(), first);
+  if (!given) seeds.push_back(104);  // an exchange makes a cell elongated enough to divide; a resumed run did at once
+  for (const int seed : seeds) {
     const std::string text = Draw(static_cast<unsigned>(seed)).scenario();
     SCOPED_TRACE("seed " + std::to_string(seed) + "\n" + text);
     try {

@@ -90,7 +90,8 @@ void check_direction(const std::string& table, const CortexInput& cortex, const 
   if (axis.empty() && (strongest != 1 || weakest != 1 || !array.empty()))
     report(".axis", "is missing", "set axis to \"along\" or \"across\"");
   if (axis.empty()) return;
-  if (strongest == weakest) report("", "has no effect, since strongest equals weakest", "set strongest above weakest");
+  if (strongest == weakest && input.sound(table + ".direction.strongest", table + ".direction.weakest"))
+    report("", "has no effect, since strongest equals weakest", "set strongest above weakest");
   const bool turns = axis == "long-axis" || axis == "stretch";
   if (turns && !array.empty())
     report(".array", "conflicts with an axis of the cell", "remove it, or set axis to \"along\"");

@@ -6,7 +6,7 @@ namespace {
 
 void check_extrusion(const std::string& table, ExtrusionInput&, const Scenario& scenario, Input& input) {
   if (!scenario.exchange.below_um && input.sound(table, "exchange"))
-    input.report(table, "cells lose neighbours only by exchange", "add [exchange] with below_um");
+    input.report(table, "cells lose neighbours only by exchange", "set exchange.below_um, for example to 0.35");
 }
 
 }  // namespace
