@@ -2,6 +2,7 @@
 #include "mechanics/local_energy.hpp"
 
 #include "extensions/extension_checks.hpp"
+#include "simulation/tape.hpp"
 #include "tissue/faces.hpp"
 
 namespace {
@@ -79,6 +80,31 @@ TEST(LocalEnergy, FunctionsOfDuals) {
       (formula(a + h, b + h) - formula(a + h, b - h) - formula(a - h, b + h) + formula(a - h, b - h)) / (4 * h * h);
   EXPECT_NEAR(dual.hessian(0, 1), mixed, 1e-6);
   EXPECT_DOUBLE_EQ(dual.hessian(0, 1), dual.hessian(1, 0));
+}
+
+// By the area of apical faces of three cells, after ten seconds.
+TEST(LocalEnergy, GradientsOfARunByItsNumbersAgreeWithDifferences) {
+  const Scenario scenario = load_scenario({"block", "block.toml",
+                                           "format = 1\n[embryo]\nshape = \"block\"\nlength_um = 60\nwidth_um = "
+                                           "20\ncell_height_um = 20\ncells = [3, 1, 1]\n"
+                                           "[cortex.top]\nregion = \"all\"\ntension_mN_per_m = 2\n[time]\nend_s = "
+                                           "10\n[monitor.top]\nquantity = \"area\"\n"});
+  const auto with = [&](double stiffness) {
+    return Tape::Variant(scenario, [stiffness](Simulation::Parts& parts) {
+      parts.model->laws.push_back(std::make_unique<LocalEnergy<KeptAreas>>(parts.model->tissue, KeptAreas{stiffness}));
+    });
+  };
+  constexpr double stiffness = 3, change = 3e-4;
+  const Tape tape = Tape(scenario, {.add = with(stiffness).add}).replayed(scenario, {});
+  const std::size_t end = tape.run().steps();
+  const auto area = [&](const Tape& of) { return of.outcome("top.area_um2", end); };
+  const ModelPair pair = tape.parameter("stiffness", with(stiffness + change), with(stiffness - change), 2 * change);
+  const auto gradient = tape.gradient({{end, area(tape).gradient}}, {.parameters = {&pair}, .tolerance = 1e-11});
+  const double difference = (area(tape.replayed(with(stiffness + change), {})).value -
+                             area(tape.replayed(with(stiffness - change), {})).value) /
+                            (2 * change);
+  EXPECT_GT(difference, 0.1);
+  EXPECT_NEAR(gradient->by_parameter[0], difference, 1e-6 * difference);
 }
 
 TEST(LocalEnergy, WorksWithEveryLinearSolver) { expect_same_run_with_every_solver(kept_areas); }
