@@ -29,7 +29,7 @@ def divided(scenario: Scenario, law: str, knots_min: list[float]) -> list[str]:
     kind, _, name = law.partition(".")
     table = scenario.to_dict()[kind][name]
     passive = [key for key in PASSIVE[kind] if table.get(key, 0) != 0]
-    if passive or "trigger" in table:
+    if passive or {"measure", "signal"} & set(table.get("trigger", {})):
         raise ValueError(f"knots_min: {law} has {' and '.join(passive) or 'a trigger'}; give a law whose tension alone has a time course, as "
                          f"a second [{kind}.NAME] without it")
     program = table.get("program", {"time_s": [0.0, 0.0], "activity": [1.0, 1.0]})
