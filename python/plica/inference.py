@@ -415,15 +415,15 @@ def infer(
     shapes : mapping of float to shape
         By time in minutes. A shape is an array of node positions, µm, of shape (nodes, 3), NaN where unknown, for the mesh of the
         scenario; or, for any mesh, cells in the order of ``Simulation.cell_data``, NaN where unknown: a `Frame`, `Polygons`, or a
-        mapping with ``centres_um`` of shape (cells, 3) and ``areas_um2`` of shape (cells,) of apical faces, or with ``centroids_um``
-        of shape (cells, 3) and ``moments_um2`` of shape (cells, 6) of whole cells: second moments about the centroid, divided by the
+        mapping with ``centres_um`` of shape (cells, 3), ``areas_um2`` of shape (cells,) or both, of apical faces, or with ``centroids_um``
+        of shape (cells, 3), ``moments_um2`` of shape (cells, 6) or both, of whole cells: second moments about the centroid, divided by the
         volume, xx, yy, zz, xy, yz, xz. With a shape at 0, displacements, ratios of areas and changes of moments since then are
         compared, and share its noise; give it if the mesh is another one than that of the scenario.
     of : str or iterable of str
         Contractions or cortices (``"cortex.apical"``).
     noise_um : float
-        Standard deviation of each coordinate of nodes, centres or centroids, in each shape, µm. Areas have sqrt(2 area) times that; moments that of
-        cells whose sides are off independently.
+        Standard deviation of each coordinate of nodes, centres or centroids, in each shape, µm. Areas have sqrt(2 area) times that;
+        moments that of cells whose sides are off independently.
     knots_min : iterable of float, optional
         Two or more times, minutes, at which factors differ; linear in between, constant before and after, independent a priori. By
         default factors are constant in time. Each knot adds one gradient per run.
@@ -505,7 +505,8 @@ def infer(
 
 def _residuals(scenario: Scenario, simulation: Simulation, shapes: Any, surface: str, noise_um: float) -> tuple[list[float], Residuals]:
     if not isinstance(shapes, Mapping) or not shapes:
-        raise TypeError(f"shapes: {told(shapes)}; give a mapping of times in minutes to shapes")
+        given = "is empty" if isinstance(shapes, Mapping) else told(shapes)
+        raise TypeError(f"shapes: {given}; give a mapping of times in minutes to shapes")
     nodes, cells = len(simulation.positions), len(simulation.pressures)
     start = record(scenario, until_min=1e-6)
     faces, whole = ApicalFaces(simulation, start._core.surface_nodes("apical"), cells), WholeCells(simulation, cells)

@@ -163,15 +163,15 @@ def shapes_of_labels(
     frames : mapping of float to array_like of int, or to its file
         By time in minutes, 0 first: label images of shape (rows, columns), or volumes of shape (planes, rows, columns); the same
         region in all.
-    spacing_um : float, or (float, float, float)
+    spacing_um : float or (float, float, float), optional
         Size of a pixel, or distances of planes, rows and columns, µm. May be omitted for files of volumes that have them.
     cells : Polygons or LabelledTissue
         Cells of the frame at 0: from `plica.polygons_of_labels` for images, from `plica.tissue_of_labels` for volumes.
     links : array_like of float, shape (n, 3), optional
         Rows of time, label in that frame, and label of its cell at 0. Several labels may be of one cell: after a division, its
         daughters are taken together. By default, a cell keeps its label.
-    apical : str
-        Apical side, as for `plica.tissue_of_labels`; for volumes only.
+    apical : str, optional
+        Apical side, as for `plica.tissue_of_labels`; for volumes, where it is needed.
     background : int
         Label of pixels outside all cells.
     gap_px : float
@@ -248,7 +248,8 @@ def shapes_of_labels(
 
 def _frames(frames: Any) -> dict[float, Any]:
     if not isinstance(frames, Mapping) or not frames:
-        raise TypeError(f"frames: {told(frames)}; give a mapping of times in minutes to labels")
+        given = "is empty" if isinstance(frames, Mapping) else told(frames)
+        raise TypeError(f"frames: {given}; give a mapping of times in minutes to labels")
     by_time = {number_from(time, 0, "frames", "times in minutes, 0 or later"): frame for time, frame in frames.items()}
     if 0 not in by_time:
         raise ValueError(f"frames: begin at {min(by_time):g} min; give that of the cells at 0, because changes since then are compared")

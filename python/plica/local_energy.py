@@ -9,7 +9,7 @@ from typing import Any, Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import text_of
+from .arguments import mapping_of
 from .errors import needed
 
 __all__ = ["LocalEnergy"]
@@ -43,8 +43,9 @@ class LocalEnergy:
     Notes
     -----
     Derivatives are exact, so runs take few Newton iterations. The law stores its energy; results are in `Simulation.energies` and
-    `Simulation.forces` under ``energy.NAME``. `Tape.gradient` gives derivatives by ``energy.NAME.NUMBER``. The scenario may not change
-    the nodes (division, exchange, extrusion), nor have mirror planes. Checkpoints do not hold the law: give it again to `load`.
+    `Simulation.forces` under ``energy.NAME``. With the law given to `record` as well, `Tape.gradient` gives derivatives by
+    ``energy.NAME.NUMBER``. The scenario may not change the nodes (division, exchange, extrusion), nor have mirror planes. Checkpoints
+    do not hold the law: give it again to `load`.
 
     Examples
     --------
@@ -109,22 +110,22 @@ LocalLaw = tuple[str, NDArray[np.int32], LocalEnergy]  # name, groups, energy
 
 
 def laws_of(energies: Optional[Mapping[str, LocalEnergy]]) -> list[LocalLaw]:
-    for name, energy in (energies or {}).items():
-        text_of(name, "energies")
+    given = mapping_of({} if energies is None else energies, "energies", "a mapping of names to LocalEnergy")
+    for name, energy in given.items():
         if not isinstance(energy, LocalEnergy):
             raise ValueError(f"energies: {name}: {type(energy).__name__}; give a LocalEnergy")
-    return [(name, energy.groups, energy) for name, energy in (energies or {}).items()]
+    return [(name, energy.groups, energy) for name, energy in given.items()]
 
 
 def number_of(energies: Mapping[str, LocalEnergy], key: str) -> Optional[tuple[str, str]]:
     """Return the names of an energy and of one of its numbers, of ``energy.NAME.NUMBER``; none for another key."""
     start, _, rest = key.partition(".")
     name, _, number = rest.rpartition(".")
-    if start != "energy" or not energies:
+    if start != "energy":
         return None
     if name not in energies or number not in energies[name].numbers:
         known = [f"energy.{one}.{of_it}" for one, energy in energies.items() for of_it in energy.numbers]
-        raise ValueError(f"{key}: not a number of an energy; give one of {', '.join(known) or 'the scenario'}")
+        raise ValueError(f"{key}: not a number of an energy; give {'one of ' + ', '.join(known) if known else 'its law as energies to record'}")
     return name, number
 
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Union
 import numpy as np
 
 from .answers import _results, _set_log
-from .arguments import pairs_of, text_of, whole
+from .arguments import pairs_of, text_of, told, whole
 from .emulator import Array, Emulator, Range, _range
 from .errors import needed
 from .fits import fit
@@ -172,10 +172,12 @@ def posterior(
     Raises
     ------
     ValueError
-        If there are no targets, a standard deviation is not positive, bounds exceed those of the study, no sample agrees, or a target
-        has no gradient.
+        If there are no targets, a standard deviation is not positive, bounds are reversed or exceed those of the study, no sample
+        agrees, or a target has no gradient.
     ScenarioError
         If a key or output variable is unknown.
+    KeyError
+        The same, with gradients.
 
     Warns
     -----
@@ -201,6 +203,9 @@ def posterior(
         raise ValueError('posterior: on="gradients" makes its own runs; give a scenario instead of a study')
     if not isinstance(source, Study) and not keys:
         raise ValueError("posterior: give keys as {key: (low, high)}")
+    for key, (low, high) in keys.items():
+        if not -math.inf < low < high < math.inf:
+            raise ValueError(f"keys[{told(key)}]: {low:g} to {high:g}; give finite bounds, the lower one first")
     count = (200 if on == "gradients" else 20 * len(keys)) if runs is None else whole(runs, "runs")
     if on == "gradients":
         found = _by_gradients(_scenario_of(source), keys, targets, count, seed, jobs, progress)

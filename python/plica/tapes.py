@@ -81,9 +81,9 @@ def record(
     times_s = sorted({60 * time for time in _times(at_min)})
     until_s = math.inf if until_min is None else 60 * number_from(until_min, 0, "until_min", "a number above 0", above=True)
     factors = _factors(own, {} if strengths is None else strengths)
-    given = dict(energies or {})
-    core = _core.Tape.record(own._ready, whole(threads, "threads", 1, 1024), times_s, until_s, factors, laws_of(given))
-    return Tape(own, core, factors, given)
+    laws = laws_of(energies)
+    core = _core.Tape.record(own._ready, whole(threads, "threads", 1, 1024), times_s, until_s, factors, laws)
+    return Tape(own, core, factors, dict(energies or {}))
 
 
 class Tape:

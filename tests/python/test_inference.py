@@ -218,7 +218,7 @@ def test_polygons_are_centres_and_areas(tmp_path):
 
 
 WRONG = [
-    (dict(shapes={}), "shapes: a value of type dict; give a mapping of times in minutes to shapes"),
+    (dict(shapes={}), "shapes: is empty; give a mapping of times in minutes to shapes"),
     (dict(shapes={0: np.zeros((50, 3))}), "shapes: has no time after 0"),
     (dict(shapes={1: np.zeros((7, 3))}), "shapes[1]: an array of float64 and shape (7, 3) for a tissue of 50 nodes; give positions"),
     (dict(shapes={1: {"areas_um2": np.ones(3)}}), "areas_um2 of shape (3,) for 16 cells; give (16,), one row per cell"),

@@ -124,6 +124,13 @@ def test_only_numbers_of_energies_have_gradients(columns, key):
     tape = plica.record(SHEET, until_min=0.05, energies=springs(columns))
     with pytest.raises(ValueError, match=f"{key}: not a number of an energy; give one of energy.springs.k, energy.springs.L"):
         tape.gradient(height, of=key)
+    with pytest.raises(ValueError, match=f"{key}: not a number of an energy; give its law as energies to record"):
+        plica.record(SHEET, until_min=0.05).gradient(height, of=key)
+
+
+def test_energies_have_names(columns):
+    with pytest.raises(TypeError, match="energies: a value of type list; give a mapping of names to LocalEnergy"):
+        plica.Simulation(SHEET, energies=[LocalEnergy("length(0, 1)", columns)])
 
 
 @pytest.mark.parametrize("make, text", [

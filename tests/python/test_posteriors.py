@@ -136,6 +136,7 @@ def test_the_density_about_a_fit_is_one():
 @pytest.mark.parametrize("arguments, told", [
     ({"targets": {}}, "sd > 0"), ({"targets": {DEPTH: (1, 0)}}, "sd > 0"), ({"on": "run"}, "emulator"),
     ({"keys": {"yolk": (0, 1)}}, "yolk does not vary"), ({"keys": {YOUNG: (100, 500)}}, "the study covers 400 to 1200"),
+    ({"keys": {YOUNG: (900, 500)}}, "900 to 500; give finite bounds, the lower one first"),
 ])
 def test_posteriors_that_are_none(arguments, told):
     with pytest.raises(ValueError, match=told):
