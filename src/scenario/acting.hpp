@@ -27,7 +27,7 @@ struct Acting {
   std::string_view faces_key = {};  // faces, edges or face; empty: acts on whole cells
   bool can_be_ablated = false;
   bool contracts = false;         // apical surfaces, where a furrow is measured by default
-  bool is_constant = false;       // a tension that does not depend on the deformation
+  bool is_constant = false;       // a tension of the region that does not depend on its deformation
   bool has_sudden_onset = false;  // without its program
   std::vector<Force> forces = {};
 };

@@ -97,6 +97,7 @@ TEST(Advice, AConstantTensionThatEndsAbruptlyIsToldWithAProfileThatDoesNot) {
     EXPECT_TRUE(advice_on_stripe(region, table + "\n" + profile).empty()) << lines[0].substr(begin);
   }
   EXPECT_TRUE(advice_on_stripe("y_um = [-12, 12]", springs + "stiffness_nN_per_um = 2").empty());
+  EXPECT_TRUE(advice_on_stripe("y_um = [-12, 12]", springs + "preload_nN = 20\nborder = \"all\"").empty());
   EXPECT_TRUE(advice_on_stripe("y_um = [-12, 12]", cortex + "saturation_ratio = 0.2").empty());
   EXPECT_TRUE(advice_on_stripe("y_um = [-99, 99]", cortex).empty());
 }

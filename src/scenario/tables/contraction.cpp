@@ -86,8 +86,8 @@ void describe(const C& input, const Scenario& scenario, Acting& acting) {
   const double shape = input.faces == "lateral" ? 0.01 : 1;
   acting.faces_key = "edges";
   acting.can_be_ablated = acting.contracts = acting.has_sudden_onset = true;
-  // A tension that falls with the length on which it acts ends softly by itself.
-  acting.is_constant = input.faces != "lateral" && input.stiffness_nN_per_um == 0 &&
+  // A tension that falls with the length on which it acts ends softly by itself; a cable runs along the border.
+  acting.is_constant = input.faces != "lateral" && input.stiffness_nN_per_um == 0 && input.border.empty() &&
                        (input.tension_mN_per_m > 0 || input.preload_nN > 0);
   acting.forces = {{"stiffness_nN_per_um", input.stiffness_nN_per_um, shape * stress * height},
                    {"preload_nN", input.preload_nN, 0.01 * stress * height * height},
