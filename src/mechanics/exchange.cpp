@@ -154,6 +154,21 @@ std::optional<ExchangeOutcome> exchange_neighbours(Model& model, State& state, s
   return std::nullopt;
 }
 
+std::optional<ExchangeOutcome> part_neighbours(Model& model, State& state, const WallTurn& wall, double length_um) {
+  const std::optional<Model> now = grown(model, model, state.internals, state.time_s);
+  const double before = energy_of(now ? *now : model, state);
+  Model turned(model);
+  settle_growth(turned, state);
+  State then = state;
+  std::vector<WallTurn> turns = {wall};
+  TissueChange change = turn(turned, then, turns, length_um);
+  if (turns.empty()) return std::nullopt;
+  const double energy = energy_of(turned, then) - before;
+  model = std::move(turned);
+  state = std::move(then);
+  return ExchangeOutcome{std::move(change), std::move(turns), energy};
+}
+
 std::optional<ExtrusionOutcome> extrude_cells(Model& model, State& state, std::vector<CellId> cells) {
   if (cells.empty()) return std::nullopt;
   Model without(model);

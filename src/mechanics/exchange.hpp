@@ -24,6 +24,9 @@ struct ExchangeOutcome {
 std::optional<ExchangeOutcome> exchange_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
                                                    double length_um);
 
+/// Turn one wall to this length, um, whatever the forces, if its cells get good elements; empty: they do not.
+std::optional<ExchangeOutcome> part_neighbours(Model& model, State& state, const WallTurn& wall, double length_um);
+
 struct ExtrusionOutcome {
   TissueChange change;
   int count = 0;

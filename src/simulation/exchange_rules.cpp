@@ -1,6 +1,7 @@
 #include "simulation/exchange_rules.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "core/clock.hpp"
@@ -24,9 +25,35 @@ bool is_free(const Model& model, VertexId vertex) {
                              [&](NodeId node) { return std::ranges::count(model.held[node.index()], true) == 0; });
 }
 
-}  // namespace
+// Whether cells leave, whatever pulls at their walls: a rule takes them, and their apex and base are both much smaller
+// than those of their neighbours.
+CellSet dwindled_cells(const Model& model, const State& state, std::span<const ExtrusionRule> rules) {
+  constexpr double dwindled = 0.25;  // of the mean area of the neighbours
+  const Tissue& tissue = model.tissue;
+  CellSet all(tissue.cells.size(), false);
+  if (rules.empty()) return all;
+  const std::vector<double> apical = face_areas(tissue, CellSide::apical, state.positions),
+                            basal = face_areas(tissue, CellSide::basal, state.positions);
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    if (std::ranges::none_of(rules, [&](const ExtrusionRule& rule) {
+          return tissue.regions.at(rule.region)[c] && apical[c] < rule.below_um2;
+        }))
+      continue;
+    double about_apical = 0, about_basal = 0;
+    int neighbours = 0;
+    for (const Stop& stop : tissue.sheet.cells[c].ring)
+      if (const CellId one = tissue.sheet.walls[stop.wall.index()].beyond(CellId(c)); one.valid()) {
+        about_apical += apical[one.index()], about_basal += basal[one.index()];
+        ++neighbours;
+      }
+    all[c] = neighbours * apical[c] < dwindled * about_apical && neighbours * basal[c] < dwindled * about_basal;
+  }
+  return all;
+}
 
-std::vector<WallTurn> due_exchanges(const Model& model, const State& state, const ExchangeRule& rule) {
+// Walls below a length, um, that may turn by topology, cells and earlier turns, with their lengths; the shortest first.
+std::vector<std::pair<double, WallTurn>> free_turns(const Model& model, const State& state, const ExchangeRule& rule,
+                                                    double below_um) {
   const Tissue& tissue = model.tissue;
   CellSet may = tissue.regions.at(rule.region);
   for (const Growth& growth : model.growths)
@@ -40,17 +67,38 @@ std::vector<WallTurn> due_exchanges(const Model& model, const State& state, cons
   std::vector<std::pair<double, WallTurn>> found;
   for (const WallTurn& turn : possible_turns(tissue.sheet)) {
     const double length = wall_length(tissue, turn, state.positions);
-    if (length >= rule.below_um || !(lengthening(model, state, turn) < 0) || is_recent(turn)) continue;
     const auto is_out = [&](CellId cell) { return cell.valid() && !may[cell.index()]; };
-    if (std::ranges::any_of(turn.cells(), is_out) || !is_free(model, turn.begin) || !is_free(model, turn.end)) continue;
+    if (length >= below_um || is_recent(turn) || std::ranges::any_of(turn.cells(), is_out) ||
+        !is_free(model, turn.begin) || !is_free(model, turn.end))
+      continue;
     found.emplace_back(length, turn);
   }
   std::ranges::stable_sort(found, {}, &std::pair<double, WallTurn>::first);
+  return found;
+}
+
+void count(const ExchangeOutcome& outcome, Exchanges& exchanges) {
+  exchanges.count += static_cast<int>(outcome.turns.size());
+  exchanges.energy += outcome.energy;
+}
+
+Exchanges::Turned turned_now(const Sheet& sheet, const WallTurn& turn, const State& state) {
+  return {column(sheet, turn.begin).front(), column(sheet, turn.end).front(), state.time_s};
+}
+
+}  // namespace
+
+std::vector<WallTurn> due_exchanges(const Model& model, const State& state, const ExchangeRule& rule,
+                                    std::span<const ExtrusionRule> extrusions) {
+  const CellSet dwindled = dwindled_cells(model, state, extrusions);
   std::vector<WallTurn> due;
-  CellSet taken(tissue.cells.size(), false);
-  for (const auto& [length, turn] : found) {
+  CellSet taken(model.tissue.cells.size(), false);
+  for (const auto& [length, turn] : free_turns(model, state, rule, rule.below_um)) {
     const auto is_taken = [&](CellId cell) { return cell.valid() && taken[cell.index()]; };
-    if (std::ranges::any_of(turn.cells(), is_taken)) continue;
+    const auto gains = [&](CellId cell) { return cell.valid() && dwindled[cell.index()]; };
+    if (gains(turn.behind) || gains(turn.ahead) || !(lengthening(model, state, turn) < 0) ||
+        std::ranges::any_of(turn.cells(), is_taken))
+      continue;
     for (const CellId cell : turn.cells())
       if (cell.valid()) taken[cell.index()] = true;
     due.push_back(turn);
@@ -58,20 +106,45 @@ std::vector<WallTurn> due_exchanges(const Model& model, const State& state, cons
   return due;
 }
 
-std::optional<ExchangeOutcome> make_exchanges(Model& model, State& state, const ExchangeRule& rule) {
+std::optional<ExchangeOutcome> make_exchanges(Model& model, State& state, const ExchangeRule& rule,
+                                              std::span<const ExtrusionRule> extrusions) {
   state.exchanges.until_s = state.time_s;
   std::erase_if(state.exchanges.recent,
                 [&](const Exchanges::Turned& one) { return has_come(one.time_s + rule.again_after_s, state.time_s); });
-  const std::vector<WallTurn> due = due_exchanges(model, state, rule);
+  const std::vector<WallTurn> due = due_exchanges(model, state, rule, extrusions);
   std::optional<ExchangeOutcome> outcome = exchange_neighbours(model, state, due, rule.new_length_um);
   const Sheet& sheet = model.tissue.sheet;
-  for (const WallTurn& turn : due)
-    state.exchanges.recent.push_back(
-        {column(sheet, turn.begin).front(), column(sheet, turn.end).front(), state.time_s});
-  if (!outcome) return std::nullopt;
-  state.exchanges.count += static_cast<int>(outcome->turns.size());
-  state.exchanges.energy += outcome->energy;
+  for (const WallTurn& turn : due) state.exchanges.recent.push_back(turned_now(sheet, turn, state));
+  if (outcome) count(*outcome, state.exchanges);
   return outcome;
+}
+
+std::optional<ExchangeOutcome> make_parting(Model& model, State& state, const ExchangeRule& rule,
+                                            std::span<const ExtrusionRule> extrusions) {
+  const Sheet& sheet = model.tissue.sheet;
+  CellSet parting = dwindled_cells(model, state, extrusions);
+  for (std::size_t c = 0; c < parting.size(); ++c) parting[c] = parting[c] && sheet.cells[c].ring.size() > 3;
+  if (std::ranges::count(parting, true) == 0) return std::nullopt;
+  const auto has_turned = [&](VertexId vertex) {
+    const NodeId node = column(sheet, vertex).front();
+    return std::ranges::any_of(state.exchanges.recent, [&](const Exchanges::Turned& one) {
+      return one.time_s == state.time_s && (one.begin == node || one.end == node);
+    });
+  };
+  const auto parts = [&](CellId cell) {
+    return cell.valid() && parting[cell.index()] &&
+           std::ranges::none_of(sheet.cells[cell.index()].ring, has_turned, &Stop::vertex);
+  };
+  for (const auto& [length, turn] : free_turns(model, state, rule, std::numeric_limits<double>::infinity())) {
+    if (!parts(turn.left) && !parts(turn.right)) continue;
+    state.exchanges.recent.push_back(turned_now(sheet, turn, state));
+    std::optional<ExchangeOutcome> outcome =
+        part_neighbours(model, state, turn, std::min(rule.new_length_um, 0.5 * length));
+    if (!outcome) continue;
+    count(*outcome, state.exchanges);
+    return outcome;
+  }
+  return std::nullopt;
 }
 
 std::optional<ExtrusionOutcome> make_extrusions(Model& model, State& state, std::span<const ExtrusionRule> rules) {

@@ -1,6 +1,7 @@
 // Exchange and extrusion rules of a scenario: which walls may turn after a step, which cells leave.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,11 +22,19 @@ struct ExtrusionRule {
 };
 
 /// Walls due at the time of the state, the shortest first: shorter than the rule says and shrinking, between cells of
-/// its region that do not grow, with free columns, and not among `State::exchanges.recent`. No two share a cell.
-std::vector<WallTurn> due_exchanges(const Model& model, const State& state, const ExchangeRule& rule);
+/// its region that do not grow, with free columns, and not among `State::exchanges.recent`. No two share a cell. Cells
+/// about to leave gain no neighbour.
+std::vector<WallTurn> due_exchanges(const Model& model, const State& state, const ExchangeRule& rule,
+                                    std::span<const ExtrusionRule> extrusions = {});
 
 /// Turn the walls due that forces then lengthen, and count them; empty: none.
-std::optional<ExchangeOutcome> make_exchanges(Model& model, State& state, const ExchangeRule& rule);
+std::optional<ExchangeOutcome> make_exchanges(Model& model, State& state, const ExchangeRule& rule,
+                                              std::span<const ExtrusionRule> extrusions = {});
+
+/// Turn the shortest wall of a cell about to leave, with more than three walls, whatever the forces; empty: none.
+/// Called again, it takes the next of these cells: each turns one wall at a time.
+std::optional<ExchangeOutcome> make_parting(Model& model, State& state, const ExchangeRule& rule,
+                                            std::span<const ExtrusionRule> extrusions);
 
 /// Take out the cells of these regions that are small and have come down to three walls, and count them; empty: none.
 std::optional<ExtrusionOutcome> make_extrusions(Model& model, State& state, std::span<const ExtrusionRule> rules);

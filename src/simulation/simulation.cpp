@@ -270,7 +270,10 @@ void Simulation::divide(const std::vector<PlannedDivision>& due) {
 void Simulation::exchange() {
   if (!controls_.exchange || status() != RunStatus::under_way) return;
   if (now_.state.exchanges.until_s == now_.state.time_s) return;
-  if (const auto outcome = make_exchanges(*model_, now_.state, *controls_.exchange)) adopt(outcome->change);
+  if (const auto outcome = make_exchanges(*model_, now_.state, *controls_.exchange, controls_.extrusions))
+    adopt(outcome->change);
+  while (const auto outcome = make_parting(*model_, now_.state, *controls_.exchange, controls_.extrusions))
+    adopt(outcome->change);
   if (const auto outcome = make_extrusions(*model_, now_.state, controls_.extrusions)) adopt(outcome->change);
 }
 
