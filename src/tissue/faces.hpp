@@ -43,8 +43,8 @@ std::vector<std::vector<CellId>> wall_neighbours(const Tissue& tissue);
 /// Return the fraction of a wall of a cell, by the stop of its ring where it begins, that belongs to this tissue.
 double wall_share(const Tissue& tissue, CellId cell, std::size_t stop);
 
-/// Return these, and for each side of a cell on a mirror plane or at an end of a slice its image, which is the cell
-/// itself; itself, too, if it has no neighbour.
+/// Return the neighbours of each cell by wall_neighbours, and for each side of a cell on a mirror plane or at an end of
+/// a slice its image, which is the cell itself; itself, too, if it has no neighbour.
 std::vector<std::vector<CellId>> neighbours_and_images(const Tissue& tissue);
 
 /// Return the first cell without an apical or basal face, which shows more than one layer of cells.

@@ -1,4 +1,4 @@
-"""What a study says, held against functions of which everything is known. No embryo is run, but where that is said."""
+"""What a study says, compared with functions of which everything is known. No embryo is run, but where that is said."""
 import re
 
 import matplotlib.pyplot as plt

@@ -1,4 +1,4 @@
-"""Posteriors, held against those of which everything is known."""
+"""Posteriors, compared with those of which everything is known."""
 import numpy as np
 import pytest
 
