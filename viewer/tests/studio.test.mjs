@@ -31,11 +31,18 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-async function open({ dark = false } = {}) {
+// `late`: the server's answers come after the states that follow from them, as on a fast machine.
+async function open({ dark = false, late = false } = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, colorScheme: dark ? "dark"
     : "light", acceptDownloads: true });
   const page = await context.newPage();
   page.setDefaultTimeout(patience);
+  if (late) {
+    await page.routeWebSocket(/\/ws/, (socket) => {
+      const there = socket.connectToServer();
+      there.onMessage((message) => setTimeout(() => socket.send(message), /^\{"id"/.test(message) ? 1000 : 0));
+    });
+  }
   const wrong = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && wrong.push(message.text()));
   page.on("pageerror", (error) => wrong.push(String(error)));
@@ -256,7 +263,7 @@ test("a tissue of mine is shown with remarks before it is used", options, async 
     ...at.slice(1).flatMap((_, y) => at.slice(1).map((_, x) => 5 * y + x).map((i) => `4 ${i} ${i + 1} ${i + 6} ${i + 5}`))]
     .join("\n"));
   writeFileSync(join(folder, "broken.off"), "OFF\n1 0 0\n0 0 0\n");
-  const { page, done } = await openedScenario();
+  const { page, done } = await openedScenario({ late: true });
   const title = await page.textContent("#title");
   await page.click("#open");
   await page.click('.file[data-source="broken.off"]');
@@ -266,6 +273,7 @@ test("a tissue of mine is shown with remarks before it is used", options, async 
   await page.click('.file[data-source="sheet.off"]');
   await page.waitForSelector("#use:not([disabled])");
   assert.match(await page.textContent("#remarks"), /16 cells/);
+  await page.waitForSelector("dialog[open]", { state: "hidden" });
   await page.waitForFunction(() => document.body.dataset.frame.startsWith("-1/"));
   assert.equal(await page.textContent("#title"), title);
   await page.fill("#ask-cell_height_um", "15");
@@ -275,7 +283,7 @@ test("a tissue of mine is shown with remarks before it is used", options, async 
   await page.click("#use");
   await page.waitForFunction(() => document.querySelector("#title").textContent === "sheet.off");
   await page.waitForFunction(() => document.querySelector("#text").textContent.includes("cell_height_um = 15"));
-  assert.ok(await page.isHidden("#candidate"));
+  await page.waitForSelector("#candidate", { state: "hidden" });
   await page.click("#undo");
   await page.waitForFunction((title) => document.querySelector("#title").textContent === title, title);
   await done();

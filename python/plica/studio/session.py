@@ -190,7 +190,7 @@ class Session:
         path = self._file(source)
         if path.suffix.lower() not in ENDINGS:
             raise Refused(f"{source}: not a tissue; choose a file that ends in {', '.join(ENDINGS)}")
-        self.candidate.look_at(path, options or {})
+        self.candidate.look_at(path, source, options or {})
         self.told()
         return {}
 

@@ -151,18 +151,19 @@ class Candidate(Rest):
     def __init__(self, told: Callable[[], None], folder: Path) -> None:
         self.folder = folder
         self.path: Optional[Path] = None
-        self.kind, self.remarks, self.asked = "", list[str](), 0
+        self.source, self.kind, self.remarks, self.asked = "", "", list[str](), 0
         self.options: Table = {}
         self._scenario: Optional[Scenario] = None
         super().__init__(told, -1)
 
-    def look_at(self, path: Path, options: Table) -> None:
-        """Begin to read a file; `options`: answers by name, and the kind of file."""
+    def look_at(self, path: Path, source: str, options: Table) -> None:
+        """Begin to read a file, which the page calls `source`; `options`: answers by name, and the kind of file."""
         given = {str(name): str(value) for name, value in options.items()}
         with self._wanted:
             if path != self.path:
                 self.kind, self.options = "", {}
-            self.path, self.problem, self.remarks, self._built, self._scenario = path, "", [], None, None
+            self.path, self.source, self.problem, self.remarks = path, source, "", []
+            self._built, self._scenario = None, None
             self.cells, self.asked = 0, self.asked + 1
             self.build(partial(self._read, path, given, self.asked))
 
@@ -208,7 +209,7 @@ class Candidate(Rest):
                 return None
             fields = [{**one._asdict(), "value": self.options.get(one.name, one.value)}
                       for one in OPTIONS.get(self.kind, [])]
-            return {"file": self.path.name, "kind": self.kind, "kinds": ENDINGS[self.path.suffix.lower()],
+            return {"file": self.source, "kind": self.kind, "kinds": ENDINGS[self.path.suffix.lower()],
                     "options": fields, "remarks": self.remarks, "problem": self.problem, "cells": self.cells,
                     "asked": self.asked}
 

@@ -5,7 +5,7 @@ import type { Candidate, Connection } from "./connection";
 export const candidateRun = -1; // number of its frames, beside those of runs
 
 export class CandidatePanel {
-  private source = "";
+  private file = "";
   private asked = ""; // number and kind of the reading that the fields are of
   private readonly questions = element("div", { class: "group" });
   private readonly remarks = element("ul", { id: "remarks" });
@@ -21,15 +21,12 @@ export class CandidatePanel {
     this.use.addEventListener("click", () => void connection.order("use").catch(tell));
   }
 
-  lookAt(source: string): void {
-    this.source = source;
-    this.questions.replaceChildren();
-  }
-
   /** Show what the server knows of the file, while it is chosen. */
   show(candidate: Candidate | null, isChosen: boolean): void {
     this.holder.hidden = !isChosen || candidate === null;
     if (!candidate) return;
+    if (candidate.file !== this.file) this.questions.replaceChildren();
+    this.file = candidate.file;
     const isRead = candidate.cells > 0;
     this.title.textContent = isRead ? `${candidate.file}: ${candidate.cells} cells, not used yet`
       : candidate.problem === "" ? `${candidate.file} is being read…` : `${candidate.file} cannot be used so far`;
@@ -43,7 +40,7 @@ export class CandidatePanel {
   private fill(candidate: Candidate): void {
     this.asked = `${candidate.asked} ${candidate.kind}`;
     const answers: Record<string, string> = Object.fromEntries(candidate.options.map(({ name, value }) => [name, value]));
-    const ask = (options: object) => void this.connection.order("look_at", { source: this.source, options })
+    const ask = (options: object) => void this.connection.order("look_at", { source: candidate.file, options })
       .catch(this.tell);
     const field = (name: string, label: string, value: string, words: string[], changed: (value: string) => void) => {
       const input = words.length > 0

@@ -104,10 +104,7 @@ class Studio {
         this.ask();
       },
     });
-    this.start = new Start(this.connection, this.token, (source) => {
-      this.candidate.lookAt(source);
-      this.choose({ run: candidateRun });
-    });
+    this.start = new Start(this.connection, this.token, () => this.choose({ run: candidateRun }));
     this.candidate = new CandidatePanel(byId("candidate"), this.connection, (problem) => this.tell(problem), () => {
       this.choose({ run: 0 });
       if (!this.hasDraft) void this.start.open();

@@ -12,7 +12,7 @@ export class Start {
     "aria-label": "Find a file" });
 
   constructor(private readonly connection: Connection, private readonly token: string,
-    private readonly lookAt: (source: string) => void) {
+    private readonly lookAt: () => void) {
     const close = element("button", { type: "button", id: "close-start" }, "Close");
     close.addEventListener("click", () => this.dialog.close());
     this.dialog.append(element("header", {}, element("h2", {}, "Open a scenario or a tissue"), close), this.fault,
@@ -53,7 +53,7 @@ export class Start {
       const isTissue = kind === "file" && !source.endsWith(".toml");
       this.connection.order(isTissue ? "look_at" : "open", { source }).then(() => {
         this.dialog.close();
-        if (isTissue) this.lookAt(source);
+        if (isTissue) this.lookAt();
       }, (problem: Problem) => {
         this.fault.textContent = problem.message;
         this.fault.scrollIntoView();
