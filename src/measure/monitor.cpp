@@ -36,10 +36,6 @@ Vectors CellsApart::forces(const Model& model, const State& state) const {
   return forces;
 }
 
-Vectors forces_of_cells(const Model& model, const State& state, const CellSet& cells) {
-  return CellsApart(model, state.positions, cells).forces(model, state);
-}
-
 namespace {
 
 /// Reference snapshot with this mesh; empty if there is none.

@@ -46,6 +46,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "cortex"; }
+  [[nodiscard]] const Cortex* cortex() const override { return this; }
   [[nodiscard]] double energy(const Step& step) const override;
   [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
 

@@ -126,6 +126,7 @@ class SelfContact final : public Law, public LawDerivatives, public InternalChan
   template <class KnownOf>
   [[nodiscard]] std::vector<Pair> pairs(std::span<const Vec3> positions, std::span<const Pair> before,
                                         const KnownOf& known_of) const;
+  [[nodiscard]] std::vector<Pair> pairs_at(std::size_t p, std::span<const Touch> known, const Surface& surface) const;
   /// Find the pair of a point with the nearest facing triangle; after a `first` pair, with the nearest one of another
   /// part of the surface. `known`: those of the point in the previous step.
   [[nodiscard]] std::optional<Pair> pair_of(std::size_t point, std::span<const Touch> known, const Surface& surface,
