@@ -26,7 +26,7 @@ namespace plica {
 namespace {
 
 // In a row, since a resumed run repeats them.
-constexpr int most_steps_with_factor = 5;
+constexpr int most_steps_with_factor = 10;
 
 double max_speed(const State& state) {
   double fastest = 0;
