@@ -8,6 +8,7 @@
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/energy.hpp"
+#include "mechanics/model_memory.hpp"
 #include "support/divided.hpp"
 #include "support/prisms.hpp"
 #include "support/ran.hpp"
@@ -321,6 +322,67 @@ TEST(ExtrusionOfCells, LeavesItsPlaceToItsNeighbours) {
   Step step = motionless(state, state.velocities);
   step.internal = state.internals[2];
   for (const double tension : law.tensions(step)) EXPECT_TRUE(std::isfinite(tension));
+}
+
+// Parts a cell from so many neighbours, none of which is `kept`.
+void part(CellId cell, std::size_t count, std::optional<CellId> kept, Model& model, State& state) {
+  for (std::size_t parted = 0; parted < count; ++parted) {
+    std::vector<WallTurn> turns = possible_turns(model.tissue.sheet);
+    std::erase_if(turns, [&](const WallTurn& one) {
+      const CellId other = one.left == cell ? one.right : one.left;
+      return (one.left != cell && one.right != cell) || other == kept;
+    });
+    ASSERT_FALSE(turns.empty());
+    ASSERT_TRUE(part_neighbours(model, state, turns.front(), 1));
+  }
+}
+
+// Rest and target volumes of cells at the end of all growth, by their ids.
+std::map<int, std::pair<double, double>> final_volumes(const Model& model) {
+  const std::optional<Model> later = grown(model, model, {}, 100);
+  const Model& at_end = later ? *later : model;
+  std::map<int, std::pair<double, double>> volumes;
+  for (std::size_t c = 0; c < at_end.tissue.cells.size(); ++c) {
+    const Cell& cell = at_end.tissue.cells[c];
+    volumes[cell.lineage.id] = {rest_volume(at_end.tissue, cell), at_end.volumes.targets()[c]};
+  }
+  return volumes;
+}
+
+// Daughters that grow lose neighbours, by exchange and by extrusion: they become as large as they would have.
+TEST(ExchangeOfCells, LeavesDaughtersTheirFinalSize) {
+  constexpr CellId mother(24), neighbour(25);
+  std::map<int, Vec3> final_corner;
+  for (const Mat3& turn : {Mat3(Mat3::Identity()), Mat3(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()))}) {
+    Model model = foam(tissue_from_prisms(honeycomb(7, 7, 3.5, 10), PolygonSplit::diagonals, 1));
+    const Model initial(model);
+    State state = rest_state(model);
+    for (Vec3& x : state.positions) x = turn * x;
+    const std::vector<PlannedDivision> cut = {{.cut = {mother, 0, 3}, .growth_s = 10, .volume_ratio = 1}};
+    std::vector<CellId> origin = divide_cells(model, state, cut).origin;
+    const auto expected = final_volumes(model);
+    state.time_s = 4;
+    part(mother, 1, neighbour, model, state);
+    state.time_s = 6;
+    part(neighbour, model.tissue.cells[neighbour.index()].sides() - 3, mother, model, state);
+    state.time_s = 8;
+    const auto outcome = extrude_cells(model, state, {neighbour});
+    ASSERT_TRUE(outcome);
+    int grow = 0;
+    for (const Growth& growth : model.growths) {
+      const int id = model.tissue.cells[growth.cell.index()].lineage.id;
+      const auto [corner, is_first] = final_corner.emplace(id, growth.rest_to.front());
+      EXPECT_LE((growth.rest_to.front() - turn * corner->second).norm(), 1e-9);
+      grow += growth.start_s == 8 ? 1 : 0;
+    }
+    EXPECT_GE(grow, 1);
+    for (const auto& [id, volumes] : final_volumes(model)) {
+      EXPECT_NEAR(volumes.first / expected.at(id).first, 1, 1e-9) << id;
+      EXPECT_NEAR(volumes.second / expected.at(id).second, 1, 1e-9) << id;
+    }
+    const ModelMemory memory = memory_of(model, inherited(outcome->change, origin));
+    EXPECT_EQ(final_volumes(restored(initial, memory, model.tissue.node_count())), final_volumes(model));
+  }
 }
 
 // A homogeneous stretch is all by shape, and the sum of both parts is that of the tissue.
