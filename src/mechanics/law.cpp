@@ -7,7 +7,7 @@ namespace plica {
 std::unique_ptr<Law> LawChange::restored(const Tissue& tissue, const TissueChange& change,
                                          std::span<const Vec3> positions, std::span<const double> past) const {
   if (!past.empty()) throw InvalidNumbers();
-  return after_division(tissue, change, positions);
+  return after_change(tissue, change, positions);
 }
 
 void Law::refuse_gradient(std::string_view why) const { throw NoGradient(label() + ": " + std::string(why)); }

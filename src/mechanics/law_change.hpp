@@ -26,13 +26,13 @@ class LawChange {
   /// Return the law for the tissue after a change (division, exchange, extrusion), with nodes at `positions`. Forces on
   /// existing nodes are unchanged by a division, except for effects of finer elements. Also called for a tissue of some
   /// cells only (CellsApart) and after extrusion, so previous cells and nodes may be missing.
-  [[nodiscard]] virtual std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                            std::span<const Vec3> positions) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                          std::span<const Vec3> positions) const = 0;
   /// Return the internal state after a change of the tissue from the one before; called on the law before the change.
-  [[nodiscard]] virtual std::vector<double> internal_after_division(std::span<const double> internal,
-                                                                    const Tissue& /*tissue*/,
-                                                                    const TissueChange& /*change*/,
-                                                                    const ChangePositions& /*positions*/) const {
+  [[nodiscard]] virtual std::vector<double> internal_after_change(std::span<const double> internal,
+                                                                  const Tissue& /*tissue*/,
+                                                                  const TissueChange& /*change*/,
+                                                                  const ChangePositions& /*positions*/) const {
     return {internal.begin(), internal.end()};
   }
 

@@ -420,13 +420,12 @@ void SelfContact::add_group(std::span<const KeptNode> of_whole, NodeGroups& grou
   groups.add(nodes);
 }
 
-std::unique_ptr<Law> SelfContact::after_division(const Tissue& tissue, const TissueChange&,
-                                                 std::span<const Vec3>) const {
+std::unique_ptr<Law> SelfContact::after_change(const Tissue& tissue, const TissueChange&, std::span<const Vec3>) const {
   return std::make_unique<SelfContact>(tissue, rule_);
 }
 
-std::vector<double> SelfContact::internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                         const TissueChange&, const ChangePositions& positions) const {
+std::vector<double> SelfContact::internal_after_change(std::span<const double> internal, const Tissue& tissue,
+                                                       const TissueChange&, const ChangePositions& positions) const {
   if (positions.after.empty()) return {};  // of a part: contact belongs to none
   const SelfContact after(tissue, rule_);
   const std::span<const Pair> before = pairs_of(internal);

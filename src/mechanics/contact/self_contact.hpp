@@ -70,13 +70,13 @@ class SelfContact final : public Law, public LawDerivatives, public InternalChan
   [[nodiscard]] bool accepts(std::span<const double> internal, const Tissue& /*tissue*/) const override {
     return internal.empty() || internal.size() % numbers_of_pair == 1;
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> positions) const override;
   /// Return pairs found again. A point may be as far beyond the surface as the nearest point that touched before. For a
   /// part of the tissue there are none, since contact belongs to no part.
-  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                            const TissueChange& change,
-                                                            const ChangePositions& positions) const override;
+  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& tissue,
+                                                          const TissueChange& change,
+                                                          const ChangePositions& positions) const override;
 
   /// Pairs keep their features.
   [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
