@@ -488,6 +488,47 @@ region = "middle"
 apical_area_below_um2 = 30
 )";
 
+// Amounts of a signal by the ids of cells, which may change only where cells leave.
+struct SignalWatch final : SimulationListener {
+  explicit SignalWatch(const Simulation& of) : run(of), amounts(now()) {}
+  void step_accepted(const AcceptedStep&, const Observation&) override { compare(0); }
+  void cells_divided(const TissueChange& change) override {
+    CellSet stays(amounts.size(), false);
+    for (const CellId cell : change.origin) stays[cell.index()] = true;
+    double taken = 0;
+    for (std::size_t c = 0; c < stays.size(); ++c) taken += stays[c] ? 0 : amounts[c];
+    lost += taken;
+    compare(taken);
+  }
+  void compare(double taken) {
+    const double before = sum_of(amounts);
+    amounts = now();
+    EXPECT_NEAR(sum_of(amounts), before - taken, 1e-12 * before);
+  }
+  [[nodiscard]] std::vector<double> now() const {
+    std::vector<double> values = run.model().volumes.volumes(run.state().positions);
+    for (std::size_t c = 0; c < values.size(); ++c) values[c] *= run.state().signals[0][c];
+    return values;
+  }
+  static double sum_of(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+  const Simulation& run;
+  std::vector<double> amounts;
+  double lost = 0;
+};
+
+// Diffusion, divisions and exchanges conserve a signal; a cell that leaves takes its amount with it.
+TEST(ExtrusionOfCells, TakeTheirSignalsWithThemAndNoMore) {
+  Simulation run(scenario_of(leaving + "[signal.u]\ndiffusion_um2_per_min = 20\ninitial = 1\ninitial_spread = 0.5\n"));
+  SignalWatch watch(run);
+  run.listen(watch);
+  EXPECT_EQ(run.run(), RunStatus::end_time) << run.failure();
+  run.stop_listening(watch);
+  EXPECT_GT(run.divisions(), 0);
+  EXPECT_GT(run.state().exchanges.count, 0);
+  EXPECT_GT(run.state().exchanges.extruded, 0);
+  EXPECT_GT(watch.lost, 0);
+}
+
 // Cells told to shrink to a twentieth in a sheet whose forces would leave them four or five walls.
 TEST(ExtrusionOfCells, EveryOneThatIsToldLeaves) {
   Simulation simulation(scenario_of("format = 1\n" + sheet_table(21, 21, 8, 36) + R"(periodic = ["x", "y"]
