@@ -2,7 +2,8 @@
 import numpy as np
 import plica
 import pytest
-from plica.inference import _Field, _Problem, _residuals
+from plica.inference import _residuals
+from plica.inference_problem import Field, Problem
 from plica.knots import divided
 from plica.shape_targets import ApicalFaces, CellTarget, NodeTarget, Residuals, target_of
 from plica.whole_cells import WholeCells
@@ -228,7 +229,7 @@ def test_curvature_is_that_of_the_misfit(block_shape):
     simulation = plica.Simulation(BLOCK)
     times, residuals = _residuals(BLOCK, simulation, {0: simulation.positions, 0.5: plica.record(BLOCK, at_min=0.5, strengths={LAW: block_shape[0]}).positions(0.5),
                                                       1: block_shape[1]}, "apical", 0.1, [0])
-    problem = _Problem(BLOCK, [_Field(simulation, LAW, None)], times, residuals, 1)
+    problem = Problem(BLOCK, [Field(simulation, LAW, None)], times, residuals, 1)
     vectors, log = problem.fields[0].vectors, np.log(block_shape[0])
     tape = problem.run(vectors.T @ log, 2)
     found = problem.curvature(tape, vectors.T @ log, 2)
