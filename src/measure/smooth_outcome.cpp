@@ -125,6 +125,13 @@ void add_area_gradient(const Tissue& tissue, CellSide side, std::span<const Vec3
   }
 }
 
+bool is_relative_to_rest(const std::string& name, const MeasurePlan& plan) {
+  return name == "vml_apical_area_ratio" || std::ranges::any_of(plan.monitors, [&](const Monitor& monitor) {
+           return name == monitor.column() &&
+                  (monitor.quantity->name == "displacement" || monitor.quantity->name == "area_ratio");
+         });
+}
+
 SmoothOutcome smooth_outcome(const std::string& name, const Model& model, const MeasurePlan& plan,
                              const Vectors& positions) {
   const auto kept = plan.sets.find("furrow");
