@@ -278,7 +278,10 @@ class Tape:
         if isinstance(outcome, str):
             if len(states) != 1:
                 raise ValueError(f"at_min: {told(at_min)}; give one time for outcome {told(outcome)}")
-            of_state, by_positions = self._core.outcome(text_of(outcome, "outcome"), states[0])
+            try:
+                of_state, by_positions = self._core.outcome(text_of(outcome, "outcome"), states[0])
+            except ValueError as error:
+                raise ValueError(f"{error}, or give a function") from error
             return of_state, {states[0]: by_positions}
         all_positions = [self._core.positions(state) for state in states]
         if len({len(one) for one in all_positions}) > 1:

@@ -151,7 +151,7 @@ SmoothOutcome smooth_outcome(const std::string& name, const Model& model, const 
   }
   throw UsageError(
       fmt::format("outcome \"{}\": has no gradient here; those that have: {}; add a monitor of area, "
-                  "area_ratio, volume, position or displacement over mean, sum or rms, or give a function",
+                  "area_ratio, volume, position or displacement over mean, sum or rms",
                   name, names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
 }
 
