@@ -197,13 +197,13 @@ std::optional<ExchangeOutcome> exchange_neighbours(Model& model, State& state, s
   return std::nullopt;
 }
 
-std::optional<ExchangeOutcome> part_neighbours(Model& model, State& state, const WallTurn& wall, double length_um) {
+std::optional<ExchangeOutcome> part_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
+                                               double length_um) {
   const std::optional<Model> now = grown(model, model, state.internals, state.time_s);
   const double before = energy_of(now ? *now : model, state);
   Model turned(model);
   settle_growth(turned, state);
   State then = state;
-  std::vector<WallTurn> turns = {wall};
   TissueChange change = turn(turned, then, turns, length_um);
   if (turns.empty()) return std::nullopt;
   const double energy = energy_of(turned, then) - before;
@@ -230,6 +230,7 @@ std::optional<ExtrusionOutcome> extrude_cells(Model& model, State& state, std::v
     outcome.volume_um3 += volumes[cell.index()];
   }
   outcome.count = static_cast<int>(cells.size());
+  outcome.cells = std::move(cells);
   then.velocities = with_new_nodes(without.tissue, outcome.change, then.velocities);
   then.trend = {};
   renumber(outcome.change, without, then.exchanges);

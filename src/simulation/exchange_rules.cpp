@@ -77,6 +77,11 @@ void count(const ExchangeOutcome& outcome, Exchanges& exchanges) {
   exchanges.energy += outcome.energy;
 }
 
+// Length of the wall of a cell about to leave after it has turned; `length_um`: before.
+double parted_length_um(const ExchangeRule& rule, double length_um) {
+  return std::min(rule.new_length_um, 0.5 * length_um);
+}
+
 Exchanges::Turned turned_now(const Sheet& sheet, const WallTurn& turn, const State& state) {
   return {column(sheet, turn.begin).front(), column(sheet, turn.end).front(), state.time_s};
 }
@@ -143,8 +148,7 @@ std::optional<ExchangeOutcome> make_parting(Model& model, State& state, const Ex
   for (const auto& [length, turn] : free_turns(model, state, rule, std::numeric_limits<double>::infinity())) {
     if (!parts(turn.left) && !parts(turn.right)) continue;
     state.exchanges.recent.push_back(turned_now(sheet, turn, state));
-    std::optional<ExchangeOutcome> outcome =
-        part_neighbours(model, state, turn, std::min(rule.new_length_um, 0.5 * length));
+    std::optional<ExchangeOutcome> outcome = part_neighbours(model, state, {turn}, parted_length_um(rule, length));
     if (!outcome) continue;
     count(*outcome, state.exchanges);
     return outcome;
@@ -176,6 +180,27 @@ std::optional<ExtrusionOutcome> make_extrusions(Model& model, State& state, std:
   state.exchanges.extruded += outcome->count;
   state.exchanges.extruded_um3 += outcome->volume_um3;
   return outcome;
+}
+
+RepeatedChange repeated_exchange(const ExchangeOutcome& outcome, const ExchangeRule& rule) {
+  return [turns = outcome.turns, length_um = rule.new_length_um](Model& model, State& state) {
+    const auto again = part_neighbours(model, state, turns, length_um);
+    return again && again->turns.size() == turns.size();
+  };
+}
+
+RepeatedChange repeated_parting(const ExchangeOutcome& outcome, const ExchangeRule& rule) {
+  return [turns = outcome.turns, rule](Model& model, State& state) {
+    const double length_um = wall_length(model.tissue, turns.front(), state.positions);
+    return part_neighbours(model, state, turns, parted_length_um(rule, length_um)).has_value();
+  };
+}
+
+RepeatedChange repeated_extrusion(const ExtrusionOutcome& outcome) {
+  return [cells = outcome.cells](Model& model, State& state) {
+    const auto again = extrude_cells(model, state, cells);
+    return again && again->cells.size() == cells.size();
+  };
 }
 
 }  // namespace plica

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mechanics/division.hpp"
 #include "mechanics/exchange.hpp"
 
 namespace plica {
@@ -41,5 +42,10 @@ std::optional<ExchangeOutcome> make_parting(Model& model, State& state, const Ex
 
 /// Take out the cells of these regions that are small and have come down to three walls, and count them; empty: none.
 std::optional<ExtrusionOutcome> make_extrusions(Model& model, State& state, std::span<const ExtrusionRule> rules);
+
+/// Return what makes these changes again.
+RepeatedChange repeated_exchange(const ExchangeOutcome& outcome, const ExchangeRule& rule);
+RepeatedChange repeated_parting(const ExchangeOutcome& outcome, const ExchangeRule& rule);
+RepeatedChange repeated_extrusion(const ExtrusionOutcome& outcome);
 
 }  // namespace plica
