@@ -1,0 +1,60 @@
+"""Run the variations of closing.toml and print their table.
+
+Usage: closing.py length|axis BEDS OUT [NAME...], BEDS being the folder that beds.py wrote. Each run is kept in OUT/NAME; the same command
+continues after an interruption. Writes OUT/length.csv or OUT/axis.csv with all runs that have ended.
+"""
+import csv
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+
+import plica
+
+HERE = Path(__file__).resolve().parent
+PLAN = tomllib.loads((HERE / "closing.toml").read_text())
+END_MIN = {"length": 20, "axis": 9}
+COLUMNS = {
+    "length": {f"{name}@{minute}": (column, minute) for name, column in (("closed", "closed_length_ratio"), ("depth", "furrow_depth_um")) for minute in (16, 18, 20)},
+    "axis": {"depth": ("furrow_depth_um", 9), "area": ("inner.area_ratio", 9)},
+}
+
+
+def scenario_of(variation, beds, end_min):
+    scenario = plica.Scenario(HERE / "egg.toml")
+    changes = dict(PLAN["bed"][variation["bed"]])
+    if "embryo.file" in changes:
+        changes["embryo.file"] = str(beds / changes["embryo.file"])
+    if "genes" in variation:
+        changes["embryo.cell_arrays"] = str(beds / variation["genes"])
+    scenario.update(changes | variation.get("set", {}) | {"time.end_min": end_min})
+    return scenario
+
+
+def row(name, kind, run):
+    """One line of the table: the last row of each quantity up to its minute."""
+    series = run.series
+    found = {"variation": name}
+    for title, (column, minute) in COLUMNS[kind].items():
+        times = series.time_s[series[column].notna()]
+        reached = times.max() >= 60 * minute - 1
+        found[title] = round(float(np.interp(60 * minute, series.time_s, series[column])), 3) if reached else ""
+    elongation = series["elongation.apical_elongation"]
+    found["elongation@9"] = round(float(np.interp(540, series.time_s, elongation) / elongation.iloc[0]), 2)
+    if kind == "length":
+        found["closed_min"] = round(run.summary["lips_closed_time_s"] / 60, 1) if run.summary.get("lips_closed_time_s") else ""
+    return found
+
+
+if __name__ == "__main__":
+    kind, beds, out, *names = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]), *sys.argv[4:]
+    for name in names or PLAN[kind]:
+        simulation = plica.Simulation(scenario_of(PLAN[kind][name], beds, END_MIN[kind]), threads=1)
+        simulation.run(out=out / kind / name, resume=True)
+    rows = [row(name, kind, plica.open(out / kind / name)) for name in PLAN[kind] if (out / kind / name / "summary.json").exists()]
+    with (out / f"{kind}.csv").open("w", newline="") as file:
+        table = csv.DictWriter(file, rows[0], lineterminator="\n")
+        table.writeheader()
+        table.writerows(rows)
+    print((out / f"{kind}.csv").read_text())
