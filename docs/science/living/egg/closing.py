@@ -17,18 +17,19 @@ PLAN = tomllib.loads((HERE / "closing.toml").read_text())
 END_MIN = {"length": 20, "axis": 9}
 COLUMNS = {
     "length": {f"{name}@{minute}": (column, minute) for name, column in (("closed", "closed_length_ratio"), ("depth", "furrow_depth_um")) for minute in (16, 18, 20)},
-    "axis": {"depth": ("furrow_depth_um", 9), "area": ("inner.area_ratio", 9)},
+    "axis": {"depth@9": ("furrow_depth_um", 9)},
 }
 
 
-def scenario_of(variation, beds, end_min):
+def scenario_of(variation, beds):
+    """The scenario of a variation."""
     scenario = plica.Scenario(HERE / "egg.toml")
     changes = dict(PLAN["bed"][variation["bed"]])
     if "embryo.file" in changes:
         changes["embryo.file"] = str(beds / changes["embryo.file"])
     if "genes" in variation:
         changes["embryo.cell_arrays"] = str(beds / variation["genes"])
-    scenario.update(changes | variation.get("set", {}) | {"time.end_min": end_min})
+    scenario.update(changes | variation.get("set", {}))
     return scenario
 
 
@@ -42,6 +43,9 @@ def row(name, kind, run):
         found[title] = round(float(np.interp(60 * minute, series.time_s, series[column])), 3) if reached else ""
     elongation = series["elongation.apical_elongation"]
     found["elongation@9"] = round(float(np.interp(540, series.time_s, elongation) / elongation.iloc[0]), 2)
+    found["area@9"] = round(float(np.interp(540, series.time_s, series["inner.area_ratio"])), 3)
+    # Of apices along the axis, relative to reference: area is length times width.
+    found["length@9"] = round((found["elongation@9"] * found["area@9"]) ** 0.5, 3)
     if kind == "length":
         found["closed_min"] = round(run.summary["lips_closed_time_s"] / 60, 1) if run.summary.get("lips_closed_time_s") else ""
     return found
@@ -50,8 +54,10 @@ def row(name, kind, run):
 if __name__ == "__main__":
     kind, beds, out, *names = sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]), *sys.argv[4:]
     for name in names or PLAN[kind]:
-        simulation = plica.Simulation(scenario_of(PLAN[kind][name], beds, END_MIN[kind]), threads=1)
-        simulation.run(out=out / kind / name, resume=True)
+        if (out / kind / name / "summary.json").exists():
+            continue
+        simulation = plica.Simulation(scenario_of(PLAN[kind][name], beds), threads=1)
+        simulation.run(until_min=END_MIN[kind], out=out / kind / name, resume=True)
     rows = [row(name, kind, plica.open(out / kind / name)) for name in PLAN[kind] if (out / kind / name / "summary.json").exists()]
     with (out / f"{kind}.csv").open("w", newline="") as file:
         table = csv.DictWriter(file, rows[0], lineterminator="\n")
