@@ -1,9 +1,8 @@
-"""Write embryos between the egg of egg.toml and the measured one: two shapes, each with two meshes, symmetric about y = 0.
+"""Write what closing.toml needs: cells between those of egg.toml and of the measured embryo.
 
-Usage: beds.py FOLDER. Writes for egg and atlas: SHAPE-quads.obj (the rows of four-sided cells of egg.obj), SHAPE-polygons.obj (the cells of
-drosophila-atlas, its half with y > 0 and the mirror image), and SHAPE-quads.csv and SHAPE-polygons.csv with the genes of these cells. Cells
-of one shape are moved to the other along rays from the centre. bricks.obj is the egg with rows that are shifted by half a cell in turn on
-the ventral side, and hexagonal cells in them. Needs egg.obj (mesh.py).
+Usage: beds.py FOLDER. bricks.obj is the egg with rows that are shifted by half a cell in turn on the ventral side, and hexagonal cells in
+them. atlas-quads.obj has the four-sided cells of the egg on the shape of drosophila-atlas, to which they are moved along rays from the
+centre. quads.csv has the genes of these cells. Needs egg.obj (mesh.py).
 """
 import subprocess
 import sys
@@ -12,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 
-from plica import Polygons
 from plica.results import Frame
 
 HERE = Path(__file__).resolve().parent
@@ -53,29 +51,6 @@ def read_obj(path):
     lines = [line.split() for line in path.read_text().splitlines()]
     points = np.array([line[1:] for line in lines if line[0] == "v"], dtype=float)
     return points, [np.array(line[1:], dtype=int) - 1 for line in lines if line[0] == "f"]
-
-
-def symmetric(polygons):
-    """The cells at y > 0 and their mirror images. Vertices that both halves share come to lie at y = 0."""
-    genes = {name: values for name, values in polygons.cell_data.items() if name in GENES}
-    left = np.flatnonzero(polygons.centres[:, 1] > 0)
-    right = np.setdiff1d(np.arange(len(polygons.faces)), left)
-    corners = [np.unique(np.concatenate([polygons.faces[face] for face in half])) for half in (left, right)]
-    points = polygons.points.copy()
-    middle = np.intersect1d(*corners)
-    points[middle, 1] = 0
-    faces = [polygons.faces[face] for face in left]
-    # A vertex of one cell only, between it and its image, is none.
-    count = np.bincount(np.concatenate(faces), minlength=len(points))
-    single = middle[count[middle] == 1]
-    faces = [face[~np.isin(face, single)] for face in faces]
-    image = np.arange(len(points)) + len(points)
-    image[middle] = middle
-    both = faces + [image[np.roll(face[::-1], 1)] for face in faces]
-    used, corners = np.unique(np.concatenate(both), return_inverse=True)
-    ends = np.cumsum([len(face) for face in both])[:-1]
-    return Polygons(np.concatenate([points, points * [1, -1, 1]])[used], np.split(corners, ends),
-                    {name: np.tile(values[left], 2) for name, values in genes.items()})
 
 
 def bricks(points, faces, surface, bulge=0.2):
@@ -121,31 +96,30 @@ def bricks(points, faces, surface, bulge=0.2):
     return np.array(added), cells + rest
 
 
-def write(path, points, faces, unit, known):
-    """Mesh, and the genes of its cells: means of the three nearest known cells by direction, shape (n, 3)."""
+def write_mesh(path, points, faces):
     lines = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in points + 0.0] + ["f " + " ".join(map(str, face + 1)) for face in faces]
-    path.with_suffix(".obj").write_text("\n".join(lines) + "\n")
-    of_cells = np.array([unit[face].mean(axis=0) for face in faces])
-    of_cells[:, 1] = np.abs(of_cells[:, 1])  # equal on both sides
-    centres = known.centres
-    nearest = np.array([np.argpartition(((centres - one) ** 2).sum(axis=1), 3)[:3] for one in of_cells])
-    genes = np.stack([known.cell_data[name][nearest].mean(axis=1) for name in GENES], axis=1)
-    path.with_suffix(".csv").write_text("\n".join([",".join(GENES), *(",".join(f"{value:.4f}" for value in row) for row in genes)]) + "\n")
+    path.write_text("\n".join(lines) + "\n")
     print(f"{path.name}: {len(faces)} cells")
+
+
+def write_genes(path, unit, faces, atlas):
+    """Genes of cells: means of the three cells of the atlas that are nearest by direction, equal on both sides."""
+    known = np.abs(directions(atlas.points, ATLAS_CENTRE)[0] * [0, 1, 0]) + directions(atlas.points, ATLAS_CENTRE)[0] * [1, 0, 1]
+    known = np.array([known[face].mean(axis=0) for face in atlas.faces])
+    of_cells = np.array([unit[face].mean(axis=0) for face in faces])
+    of_cells[:, 1] = np.abs(of_cells[:, 1])
+    nearest = np.array([np.argpartition(((known - one) ** 2).sum(axis=1), 3)[:3] for one in of_cells])
+    genes = np.stack([atlas.cell_data[name][nearest].mean(axis=1) for name in GENES], axis=1)
+    path.write_text("\n".join([",".join(GENES), *(",".join(f"{value:.4f}" for value in row) for row in genes)]) + "\n")
 
 
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
     folder.mkdir(parents=True, exist_ok=True)
     subprocess.run(["plica", "mesh", "drosophila-atlas", "--out", folder / "atlas.vtu", "--overwrite"], check=True, capture_output=True)
-    atlas = symmetric(Frame(folder / "atlas.vtu", 0).polygons("apical"))
-    quads, faces = read_obj(HERE / "egg.obj")
-    meshes = {"quads": (quads, faces, np.zeros(3)), "polygons": (atlas.points, atlas.faces, ATLAS_CENTRE)}
-    shapes = {"egg": Shape(quads, np.zeros(3)), "atlas": Shape(atlas.points, ATLAS_CENTRE)}
-    known = Polygons(directions(atlas.points, ATLAS_CENTRE)[0], atlas.faces, atlas.cell_data)
-    meshes_of_egg = bricks(quads, faces, shapes["egg"])
-    write(folder / "bricks", *meshes_of_egg, directions(meshes_of_egg[0], np.zeros(3))[0], known)
-    for (mesh, (points, of_mesh, centre)), (shape, surface) in product(meshes.items(), shapes.items()):
-        unit, _ = directions(points, centre)
-        places = points if np.array_equal(centre, surface.centre) else surface.places(unit)
-        write(folder / f"{shape}-{mesh}", places, of_mesh, unit, known)
+    atlas = Frame(folder / "atlas.vtu", 0).polygons("apical")
+    points, faces = read_obj(HERE / "egg.obj")
+    unit, _ = directions(points, np.zeros(3))
+    write_mesh(folder / "bricks.obj", *bricks(points, faces, Shape(points, np.zeros(3))))
+    write_mesh(folder / "atlas-quads.obj", Shape(atlas.points, ATLAS_CENTRE).places(unit), faces)
+    write_genes(folder / "quads.csv", unit, faces, atlas)
