@@ -44,11 +44,26 @@ def row(name, kind, run):
     elongation = series["elongation.apical_elongation"]
     found["elongation@9"] = round(float(np.interp(540, series.time_s, elongation) / elongation.iloc[0]), 2)
     found["area@9"] = round(float(np.interp(540, series.time_s, series["inner.area_ratio"])), 3)
-    # Of apices along the axis, relative to reference: area is length times width.
-    found["length@9"] = round((found["elongation@9"] * found["area@9"]) ** 0.5, 3)
     if kind == "length":
         found["closed_min"] = round(run.summary["lips_closed_time_s"] / 60, 1) if run.summary.get("lips_closed_time_s") else ""
+    else:
+        found |= lengths(run)
     return found
+
+
+def lengths(run):
+    """Mean length of apices of the inner rows along the axis, relative to reference: in the middle, and from 125 µm on, where they end."""
+    reference, now = run.frames[0], run.frames.at(9)
+    apices = reference.hexahedra[:, 4:]
+    places = reference.points[apices]
+    order = np.argsort(places[:, :, 0], axis=1)[..., None]
+    ratio = np.ones(len(apices))
+    for points, power in ((now.points, 1), (reference.points, -1)):
+        corners = np.take_along_axis(points[apices], order, axis=1)
+        ratio *= np.linalg.norm(corners[:, 2:].mean(axis=1) - corners[:, :2].mean(axis=1), axis=1) ** power
+    x, y, z = places.mean(axis=1).T
+    x, rows = np.abs(x), (z < 0) & (np.abs(y) < 40)
+    return {f"length@9, {low} to {high} µm": round(float(ratio[rows & (x >= low) & (x < high)].mean()), 3) for low, high in ((0, 75), (125, 200))}
 
 
 if __name__ == "__main__":
