@@ -10,9 +10,7 @@ from pathlib import Path
 import fit
 
 
-def write(name, rows):
-    """Write rows, dictionaries whose keys may differ, beside this script."""
-    columns = list(dict.fromkeys(key for row in rows for key in row))
+def write(name, rows, columns):
     with (fit.HERE / name).open("w", newline="") as file:
         table = csv.DictWriter(file, columns, restval="", lineterminator="\n")
         table.writeheader()
@@ -20,25 +18,33 @@ def write(name, rows):
     print(f"{name}: {len(rows)} rows")
 
 
-def of_fit(found):
-    """One row of fits.csv: keys, outcomes and how the fit ended."""
+def fits_table(found):
+    """Rows of fits.csv, one per hypothesis (keys, outcomes, how the fit ended), and its columns."""
     lights = list(dict.fromkeys(target.get("light_min") for target in fit.PLAN["target"]))
-    outcomes = {f"{f'light-{lights[scenario]:g}.' if lights[scenario] else ''}{outcome}@{at:g}": f"{value:.4g}"
-                for scenario, outcome, at, _, _, value in found["targets"]}
-    values = {key: f"{value:.4g}" for key, value in found["values"].items()}
-    return {"hypothesis": found["hypothesis"], **outcomes, "misfit": f"{found['misfit']:.1f}",
-            "log_evidence": f"{found['log_evidence']:.1f}", "runs": found["runs"], "end": found["end"], **values}
+    rows, keys, outcomes = [], [], []
+    for one in found:
+        values = {key: f"{value:.4g}" for key, value in one["values"].items()}
+        reached = {(f"light-{lights[scenario]:g}." if lights[scenario] else "") + f"{outcome}@{at:g}": f"{value:.4g}"
+                   for scenario, outcome, at, _, _, value in one["targets"]}
+        keys, outcomes = (list(dict.fromkeys([*known, *new])) for known, new in ((keys, values), (outcomes, reached)))
+        rows.append({"hypothesis": one["hypothesis"], **values, **reached, "misfit": f"{one['misfit']:.1f}",
+                     "log_evidence": f"{one['log_evidence']:.1f}", "runs": one["runs"], "end": one["end"]})
+    return rows, ["hypothesis", *keys, *outcomes, "misfit", "log_evidence", "runs", "end"]
 
 
-fits, held_out = Path(sys.argv[1]), Path(sys.argv[2])
-known = [name for name in fit.PLAN["hypothesis"] if (fits / name / "evidence.json").exists()]
-write("fits.csv", [of_fit(json.loads((fits / name / "evidence.json").read_text())) for name in known])
-rows = {}
-for name in known:
-    table = held_out / name / "runs/experiments.csv"
-    for row in csv.DictReader(table.open()) if table.exists() else []:
-        key = (row["experiment"], row["outcome"])
-        number = f"{float(row['number']):.3g}" if row["number"] else ""
-        rows.setdefault(key, dict(zip(("experiment", "outcome"), key))).update({name: number, f"{name}_judgement": row["judgement"]})
-if rows:
-    write("held-out.csv", list(rows.values()))
+def held_out_table(folders):
+    """Rows of held-out.csv, one per outcome, and its columns; `folders` by hypothesis."""
+    rows = {}
+    for name, folder in folders.items():
+        for row in csv.DictReader((folder / "runs/experiments.csv").open()):
+            number = f"{float(row['number']):.3g}" if row["number"] else ""
+            key = (row["experiment"], row["outcome"])
+            rows.setdefault(key, dict(zip(("experiment", "outcome"), key))).update({name: number, f"{name}_judgement": row["judgement"]})
+    return list(rows.values()), ["experiment", "outcome", *(column for name in folders for column in (name, f"{name}_judgement"))]
+
+
+if __name__ == "__main__":
+    fits, held_out = Path(sys.argv[1]), Path(sys.argv[2])
+    names = fit.PLAN["hypothesis"]
+    write("fits.csv", *fits_table([json.loads(path.read_text()) for name in names if (path := fits / name / "evidence.json").exists()]))
+    write("held-out.csv", *held_out_table({name: held_out / name for name in names if (held_out / name / "runs/experiments.csv").exists()}))
