@@ -11,7 +11,7 @@
 
 namespace plica {
 
-/// Tissue to be measured, with what the scenario describes of it.
+/// Tissue to be measured, with what the scenario describes of it; filled by begin_sets (scenario/setup.cpp).
 struct Subject {
   const Model& model;
   FurrowSites furrow = {};                       // without cells if nothing contracts

@@ -192,12 +192,12 @@ class Law {
     return internal.size() == first_internal(tissue).size();
   }
 
-  /// Return the law for the tissue after a division, with nodes at `positions`. Forces on existing nodes are
-  /// unchanged, except for effects of finer elements. Also called for a tissue of some cells only (forces_of_cells), so
-  /// previous cells may be missing.
+  /// Return the law for the tissue after a change (division, exchange, extrusion), with nodes at `positions`. Forces on
+  /// existing nodes are unchanged by a division, except for effects of finer elements. Also called for a tissue of some
+  /// cells only (forces_of_cells) and after extrusion, so previous cells and nodes may be missing.
   [[nodiscard]] virtual std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
                                                             std::span<const Vec3> positions) const = 0;
-  /// Return the internal state after a division from the one before; called on the law before the division.
+  /// Return the internal state after a change of the tissue from the one before; called on the law before the change.
   [[nodiscard]] virtual std::vector<double> internal_after_division(std::span<const double> internal,
                                                                     const Tissue& /*tissue*/,
                                                                     const TissueChange& /*change*/,

@@ -1,5 +1,5 @@
-// Tables that act on cells by strengths (elasticity.NAME, contraction.NAME, cortex.NAME, pressure.NAME): a view of
-// each, and its pattern on a tissue with resolved regions; per-cell and per-element inputs as arrays.
+// Tables that act on cells by strengths (those with list_acting, such as cortex.NAME): a view of each, and its pattern
+// on a tissue with resolved regions; per-cell and per-element inputs as arrays.
 #pragma once
 
 #include <string>

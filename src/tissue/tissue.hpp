@@ -115,7 +115,7 @@ inline Vec3 mean_of(const NodeMean& mean, std::span<const Vec3> vectors) {
 
 struct Tissue {
   Sheet sheet;  // topology of cells; from it and the rest positions of free nodes follow elements, facets and lines
-  // Nodes: first free ones, then hanging ones. A free node keeps its number permanently.
+  // Nodes: first free ones, then hanging ones. A free node keeps its number until a cell leaves.
   Vectors rest_positions;         // nodes; um
   std::vector<NodeMean> hanging;  // last nodes; with polygons or after divisions
   // Offset of each hanging node from its mean, um. Empty unless periodic: there, a node at the far end of a period is

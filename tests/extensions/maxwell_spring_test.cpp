@@ -4,6 +4,7 @@
 // Tension k (l - L), dL/dt = (l - L)/tau, with the rate at the end of the step as in every law (law.hpp):
 //   L = (L_before + (rate_s/tau) l) / (1 + rate_s/tau),   tension = k (l - L_before) / (1 + rate_s/tau).
 // The internal state: L at the step's beginning, then L at the beginning of the step before, for steps of second order.
+// Springs keep numbers of nodes, so they follow divisions only: a table for them must refuse [exchange].
 #include "extensions/extension_checks.hpp"
 #include "mechanics/energy.hpp"
 
