@@ -330,7 +330,7 @@ void part(CellId cell, std::size_t count, std::optional<CellId> kept, Model& mod
       return (one.left != cell && one.right != cell) || other == kept;
     });
     ASSERT_FALSE(turns.empty());
-    ASSERT_TRUE(part_neighbours(model, state, turns.front(), 1));
+    ASSERT_TRUE(part_neighbours(model, state, {turns.front()}, 1));
   }
 }
 
