@@ -435,7 +435,7 @@ TEST(Tape, GradientsThroughGrowthAndExchangeAgreeWithDifferences) {
       2);
 }
 
-// Cells that are told to leave turn their walls, whose new length follows from the old one, and leave.
+// Cells that have to leave turn their walls, whose new length follows from the old one, and leave.
 TEST(Tape, GradientsThroughExtrusionAgreeWithDifferences) {
   expect_gradient({{"leaving", "leaving.toml", "format = 1\n" + sheet_table(21, 21, 8, 36) + R"(periodic = ["x", "y"]
 [elasticity]
