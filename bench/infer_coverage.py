@@ -10,7 +10,7 @@ import argparse
 
 import numpy as np
 import plica
-from plica.inference import _Field
+from plica.inference_problem import Field
 from plica.knots import divided
 
 LAW = "cortex.apical"
@@ -27,7 +27,7 @@ def repetition(scenario, knots_min, seed):
     laws = divided(own, LAW, knots_min) if knots_min else [LAW]
     simulation = plica.Simulation(own)
     for law in laws:
-        field = _Field(simulation, law, None)
+        field = Field(simulation, law, None)
         coefficients = rng.normal(size=len(field.acting)) / np.sqrt(field.precision(0.25))
         factors[law] = np.exp(field.vectors @ (coefficients * ~field.is_common))
     tape = plica.record(own, at_min=TIMES_MIN, strengths=factors)

@@ -142,7 +142,7 @@ def main():
     start = time.process_time()
     model = model_of(tissue)
     used = {one: shapes[one] for one in shapes if one <= LAST_USED_MIN}
-    found = plica.infer(model, used, of=LAW, noise_um=shapes.noise_um)
+    found = plica.infer(model, used, of=LAW, noise_um=shapes.noise_um, drift="xy")  # along z, the substrate is seen
     infer_s = time.process_time() - start
     print(found, flush=True)
 

@@ -171,7 +171,7 @@ def shapes_of_labels(
         Rows of time, label in that frame, and label of its cell at 0. Several labels may be of one cell: after a division, its
         daughters are taken together. By default, a cell keeps its label.
     apical : str, optional
-        Apical side, as for `plica.tissue_of_labels`; for volumes, where it is needed.
+        Apical side, as for `plica.tissue_of_labels`; for volumes only, where it is needed.
     background : int
         Label of pixels outside all cells.
     gap_px : float
@@ -186,7 +186,8 @@ def shapes_of_labels(
     Raises
     ------
     ValueError
-        If frames differ in shape or spacing, have less than half of the cells, or `cells` have no labels or other ones.
+        If frames differ in shape or spacing, have less than half of the cells, or `cells` have no labels or other ones; if `apical` is
+        given for images.
     FileError
         If a file cannot be read.
 
@@ -210,6 +211,8 @@ def shapes_of_labels(
     labels = _labels_of(cells)
     number(background, "background", "one label")
     gap_px = number_from(gap_px, 0, "gap_px", "a width in pixels, 0 or more")
+    if apical is not None and isinstance(cells, Polygons):
+        raise ValueError(f"apical: {told(apical)}, but images show one surface only; omit it, or give volumes and cells from tissue_of_labels")
     by_time = _links(links, given)
     cell_of = {label: cell for cell, label in enumerate(labels.tolist())}
     points, faces = (cells.points, cells.faces) if isinstance(cells, Polygons) else (cells.apical, cells.cells)

@@ -1,7 +1,7 @@
 """Measured shapes that a run is compared with: positions of nodes, apical faces of cells, or whole cells."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -78,6 +78,11 @@ class NodeTarget:
         self.seen, self.noise_um = np.isfinite(positions).ravel(), noise_um
         self.positions = positions
 
+    @property
+    def coordinates(self) -> int:
+        """How many of the residuals, the first ones, are coordinates: x, y, z by place."""
+        return self.positions.size
+
     def compare_changes_since(self, first: NodeTarget, positions: Array) -> None:
         """Compare displacements since a first shape, of which these are the positions in the model."""
         self.positions = np.where(first.seen.reshape(positions.shape), self.positions + positions - first.positions, self.positions)
@@ -112,6 +117,11 @@ class CellTarget:
         """Which residuals are known."""
         return np.asarray(np.isfinite(np.concatenate([self.middles.ravel(), self.sizes.ravel()])))
 
+    @property
+    def coordinates(self) -> int:
+        """How many of the residuals, the first ones, are coordinates: x, y, z by cell."""
+        return self.middles.size
+
     def compare_changes_since(self, first: CellTarget, positions: Array) -> None:
         """Compare changes since a first shape, of which these are the positions in the model."""
         middles, sizes = self.measures.of(positions)
@@ -143,23 +153,34 @@ class CellTarget:
 class Residuals:
     """Residuals of a run at several times, in units of their noise.
 
-    Changes since a first shape share its error, which is as large as that of others: a normal offset that is common to all times. With it, the
-    sum of squares is least at the mean over all times, the first with residual 0 among them; without it where the first is unknown.
+    Changes since a first shape share its error, which is as large as that of others: a normal offset that is common to all times. Along
+    the axes of `drift` (0 to 2), each shape has an unknown movement that is common to all places. With both, the sum of squares is least
+    at a fit to the values of all times, the first with residual 0 among them; without the offset where the first is unknown.
     """
 
-    def __init__(self, targets: list[Target], first: Optional[Target]) -> None:
-        self.targets, self.first = targets, first
+    def __init__(self, targets: list[Target], first: Optional[Target], drift: Sequence[int] = ()) -> None:
+        self.targets, self.first, self.drift = targets, first, drift
 
     def of(self, positions: list[Array]) -> tuple[list[Array], Array]:
-        """Return residuals without the offset at each of the first times, and their sums of squares, in which the offset is shared out."""
-        found = [target.residuals(one) for target, one in zip(self.targets, positions)]
-        found, offset = self._parted(found, 0.0)
+        """Return residuals without drift and offset at each of the first times, and their sums of squares, in which the offset is shared out."""
+        found, offset = self._parted(self._raw(positions), 0.0)
         shared = 0.0 if self.first is None or offset is None else float((offset[self.first.seen] ** 2).sum()) / len(found)
         return found, np.array([float((one**2).sum()) + shared for one in found])
 
     def gradients(self, positions: list[Array]) -> Array:
         """Return the gradient of half the sum of squares by positions at each of the first times."""
         return self._pulled(positions, self.of(positions)[0])
+
+    def curvature(self, positions: list[Array], changed: Iterable[list[Array]], change: float) -> Array:
+        """Return the Gauss-Newton Hessian of half the sum of squares by parameters, from positions at the first times after each of them has
+        changed by this."""
+        before, slopes, parted = self._raw(positions), [], []
+        for those in changed:
+            slope = [(one - still) / change for one, still in zip(self._raw(those), before)]
+            slopes.append(np.concatenate(slope))
+            parted.append(np.concatenate(self._parted(slope, 0.0)[0]))
+        product = np.array(slopes) @ np.array(parted).T
+        return np.asarray(0.5 * (product + product.T))
 
     def probe(self, positions: list[Array], rng: np.random.Generator) -> Array:
         """Return gradients by positions of a sum of residuals with normal weights, of which the covariance is the precision of residuals."""
@@ -170,21 +191,44 @@ class Residuals:
     def counts(self, times: int) -> Array:
         """Return the number of residuals at each of the first times."""
         seen = np.array([target.seen.sum() for target in self.targets[:times]])
+        for axis in self.drift:
+            seen -= [int(target.seen[axis:target.coordinates:3].any()) for target in self.targets[:times]]
         if self.first is None:
             return seen
         free = np.any([target.seen & ~self.first.seen for target in self.targets[:times]], axis=0)  # offsets that are unknown
         return seen - int(free.sum()) / times
 
-    def _parted(self, values: list[Array], at_first: Union[float, Array]) -> tuple[list[Array], Union[None, Array]]:
-        """Return values without their mean over times, the first among them, and this mean."""
+    def _raw(self, positions: list[Array]) -> list[Array]:
+        return [target.residuals(one) for target, one in zip(self.targets, positions)]
+
+    def _parted(self, given: list[Array], at_first: Union[float, Array]) -> tuple[list[Array], Union[None, Array]]:
+        """Return values without their drift and without their mean over times, the first among them, and this mean."""
+        seen = np.stack([target.seen for target in self.targets[:len(given)]])
+        values = np.stack(given)
+        if self.first is not None:
+            seen = np.vstack([self.first.seen, seen])
+            values = np.vstack([np.broadcast_to(at_first, values[0].shape), values])
+        for axis in self.drift:
+            at = slice(axis, self.targets[0].coordinates, 3)
+            values[:, at] -= seen[:, at] * _common(values[:, at], seen[:, at], self.first is not None)[:, None]
         if self.first is None:
-            return values, None
-        seen = [target.seen for target in self.targets[:len(values)]]
-        offset = (at_first + np.sum(values, axis=0)) / np.maximum(np.sum([self.first.seen, *seen], axis=0), 1)
-        return [np.where(known, one - offset, 0) for known, one in zip(seen, values)], offset
+            return list(values), None
+        offset = values.sum(axis=0) / np.maximum(seen.sum(axis=0), 1)
+        return [np.where(known, one - offset, 0) for known, one in zip(seen[1:], values[1:])], offset
 
     def _pulled(self, positions: list[Array], by_residuals: list[Array]) -> Array:
         return np.stack([target.pull_back(*both) for target, *both in zip(self.targets, positions, by_residuals)])
+
+
+def _common(values: Array, seen: NDArray[np.bool_], has_offsets: bool) -> Array:
+    """Return what is common to all places at each time, by least squares; values of shape (times, places) are 0 where they are not seen.
+    With offsets, each place has one that is common to all times, and the first time has 0."""
+    share = seen / np.maximum(seen.sum(axis=0), 1) if has_offsets else np.zeros(values.shape)
+    matrix = np.diag(seen.sum(axis=1)) - share @ seen.T
+    right = values.sum(axis=1) - share @ values.sum(axis=0)
+    found, free = np.zeros(len(values)), slice(int(has_offsets), None)
+    found[free] = np.linalg.lstsq(matrix[free, free], right[free], rcond=None)[0]
+    return found
 
 
 Target = Union[NodeTarget, CellTarget]

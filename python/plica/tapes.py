@@ -332,6 +332,10 @@ class Tape:
         """Return a changed run through the same steps."""
         return Tape(scenario, self._core.replayed(scenario._ready, strengths, laws_of(energies)), strengths, energies)
 
+    def _with_strengths(self, factors: Mapping[str, ArrayLike]) -> Tape:
+        """Return the run with other factors through the same steps."""
+        return self._replayed(self._scenario, _factors(self._scenario, factors), self._energies)
+
     def _parameter(self, key: str) -> _core.Parameter:
         if key not in self._parameters:
             changed = [self._changed(key, part) for part in (KEY_CHANGE, -KEY_CHANGE)]

@@ -25,20 +25,17 @@ bool is_free(const Model& model, VertexId vertex) {
                              [&](NodeId node) { return std::ranges::count(model.held[node.index()], true) == 0; });
 }
 
-// Whether cells leave, whatever pulls at their walls: a rule takes them, and their apex and base are both much smaller
-// than those of their neighbours.
+// Whether cells part from their neighbours, whatever pulls at their walls: they leave, and their apex and base are both
+// much smaller than those of their neighbours.
 CellSet dwindled_cells(const Model& model, const State& state, std::span<const ExtrusionRule> rules) {
   constexpr double dwindled = 0.25;  // of the mean area of the neighbours
   const Tissue& tissue = model.tissue;
-  CellSet all(tissue.cells.size(), false);
-  if (rules.empty()) return all;
+  CellSet all = leaving_cells(model, state, rules);
+  if (std::ranges::count(all, true) == 0) return all;
   const std::vector<double> apical = face_areas(tissue, CellSide::apical, state.positions),
                             basal = face_areas(tissue, CellSide::basal, state.positions);
   for (std::size_t c = 0; c < all.size(); ++c) {
-    if (std::ranges::none_of(rules, [&](const ExtrusionRule& rule) {
-          return tissue.regions.at(rule.region)[c] && apical[c] < rule.below_um2;
-        }))
-      continue;
+    if (!all[c]) continue;
     double about_apical = 0, about_basal = 0;
     int neighbours = 0;
     for (const Stop& stop : tissue.sheet.cells[c].ring)
@@ -55,9 +52,7 @@ CellSet dwindled_cells(const Model& model, const State& state, std::span<const E
 std::vector<std::pair<double, WallTurn>> free_turns(const Model& model, const State& state, const ExchangeRule& rule,
                                                     double below_um) {
   const Tissue& tissue = model.tissue;
-  CellSet may = tissue.regions.at(rule.region);
-  for (const Growth& growth : model.growths)
-    if (!has_come(growth.end_s, state.time_s)) may[growth.cell.index()] = false;
+  const CellSet& may = tissue.regions.at(rule.region);
   const auto is_recent = [&](const WallTurn& turn) {
     const NodeId begin = column(tissue.sheet, turn.begin).front(), end = column(tissue.sheet, turn.end).front();
     return std::ranges::any_of(state.exchanges.recent, [&](const Exchanges::Turned& one) {
@@ -92,6 +87,16 @@ Exchanges::Turned turned_now(const Sheet& sheet, const WallTurn& turn, const Sta
 }
 
 }  // namespace
+
+CellSet leaving_cells(const Model& model, const State& state, std::span<const ExtrusionRule> rules) {
+  CellSet leaving(model.tissue.cells.size(), false);
+  if (rules.empty()) return leaving;
+  const std::vector<double> areas = face_areas(model.tissue, CellSide::apical, state.positions);
+  for (const ExtrusionRule& rule : rules)
+    for (std::size_t c = 0; c < leaving.size(); ++c)
+      if (model.tissue.regions.at(rule.region)[c] && areas[c] < rule.below_um2) leaving[c] = true;
+  return leaving;
+}
 
 std::vector<WallTurn> due_exchanges(const Model& model, const State& state, const ExchangeRule& rule,
                                     std::span<const ExtrusionRule> extrusions) {
@@ -154,24 +159,22 @@ std::optional<ExchangeOutcome> make_parting(Model& model, State& state, const Ex
 std::optional<ExtrusionOutcome> make_extrusions(Model& model, State& state, std::span<const ExtrusionRule> rules) {
   if (rules.empty()) return std::nullopt;
   const Tissue& tissue = model.tissue;
-  const std::vector<double> areas = face_areas(tissue, CellSide::apical, state.positions);
+  const CellSet leaving = leaving_cells(model, state, rules);
   std::vector<CellId> due;
   CellSet taken(tissue.cells.size(), false);
-  for (const ExtrusionRule& rule : rules)
-    for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
-      const CellId cell(c);
-      if (!tissue.regions.at(rule.region)[c] || !(areas[c] < rule.below_um2) || !can_leave(tissue.sheet, cell))
-        continue;
-      std::vector<CellId> about = {cell};
-      bool is_held = false;
-      for (const Stop& stop : tissue.sheet.cells[c].ring) {
-        about.push_back(tissue.sheet.walls[stop.wall.index()].beyond(cell));
-        is_held |= !is_free(model, stop.vertex);
-      }
-      if (is_held || std::ranges::any_of(about, [&](CellId one) { return taken[one.index()]; })) continue;
-      for (const CellId one : about) taken[one.index()] = true;
-      due.push_back(cell);
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+    const CellId cell(c);
+    if (!leaving[c] || !can_leave(tissue.sheet, cell)) continue;
+    std::vector<CellId> about = {cell};
+    bool is_held = false;
+    for (const Stop& stop : tissue.sheet.cells[c].ring) {
+      about.push_back(tissue.sheet.walls[stop.wall.index()].beyond(cell));
+      is_held |= !is_free(model, stop.vertex);
     }
+    if (is_held || std::ranges::any_of(about, [&](CellId one) { return taken[one.index()]; })) continue;
+    for (const CellId one : about) taken[one.index()] = true;
+    due.push_back(cell);
+  }
   std::optional<ExtrusionOutcome> outcome = extrude_cells(model, state, std::move(due));
   if (!outcome) return std::nullopt;
   state.exchanges.extruded += outcome->count;

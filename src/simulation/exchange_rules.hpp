@@ -22,8 +22,11 @@ struct ExtrusionRule {
   double below_um2 = 0;  // apical area of a cell that leaves
 };
 
+/// Cells that leave: in the region of a rule, with a smaller apical area than it says.
+CellSet leaving_cells(const Model& model, const State& state, std::span<const ExtrusionRule> rules);
+
 /// Walls due at the time of the state, the shortest first: shorter than the rule says and shrinking, between cells of
-/// its region that do not grow, with free columns, and not among `State::exchanges.recent`. No two share a cell. Cells
+/// its region, with free columns, and not among `State::exchanges.recent`. No two share a cell. Cells
 /// about to leave gain no neighbour.
 std::vector<WallTurn> due_exchanges(const Model& model, const State& state, const ExchangeRule& rule,
                                     std::span<const ExtrusionRule> extrusions = {});

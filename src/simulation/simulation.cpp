@@ -26,7 +26,7 @@ namespace plica {
 namespace {
 
 // In a row, since a resumed run repeats them.
-constexpr int most_steps_with_factor = 5;
+constexpr int most_steps_with_factor = 10;
 
 double max_speed(const State& state) {
   double fastest = 0;
@@ -342,7 +342,7 @@ bool Simulation::step(double until_s) {
   if (has_come(until_s, now_.state.time_s)) return false;
   if (!has_begun_) {
     if (now_.state.divided_until_s != now_.state.time_s)  // else done: an exchange may have made more of them due
-      divide(due_divisions(solved(), now_.state, controls_.divisions));
+      divide(due_divisions(solved(), now_.state, controls_.divisions, controls_.extrusions));
     exchange();
   }
   has_begun_ = true;
@@ -361,7 +361,7 @@ bool Simulation::step(double until_s) {
                                                 before.positions, now_.state.positions);
   const State& state = now_.state;
   const double speed = max_speed(state);
-  const std::vector<PlannedDivision> due = due_divisions(solved(), state, controls_.divisions);
+  const std::vector<PlannedDivision> due = due_divisions(solved(), state, controls_.divisions, controls_.extrusions);
   now_.at_equilibrium = speed < controls_.equilibrium_speed_um_per_s && due.empty() &&
                         are_at_rest(before.signals, state.signals, state.time_s - before.time_s) &&
                         !cells_grow(*model_, state.internals, state.time_s) &&

@@ -106,7 +106,7 @@ class Simulation {
 
   /// Checkpoint: everything the next step depends on besides the scenario. A reused factorization is forgotten.
   [[nodiscard]] RunMemory memory() const;
-  /// Whether none is in use, so that memory() changes nothing: at the latest after every fifth step, at the time that a
+  /// Whether none is in use, so that memory() changes nothing: at the latest after every tenth step, at the time that a
   /// step was asked for, before a division and at the end.
   [[nodiscard]] bool is_resumable() const { return steps_with_factor_ == 0; }
 

@@ -2,6 +2,8 @@
 import numpy as np
 import plica
 import pytest
+from plica.inference import _residuals
+from plica.inference_problem import Field, Problem
 from plica.knots import divided
 from plica.shape_targets import ApicalFaces, CellTarget, NodeTarget, Residuals, target_of
 from plica.whole_cells import WholeCells
@@ -52,7 +54,7 @@ def test_tensions_of_a_finer_mesh_are_recovered():
         centres, areas = seen[time]
         shapes[time] = {"centres_um": centres + noise_um * rng.normal(size=centres.shape),
                         "areas_um2": areas + noise_um * np.sqrt(2 * areas) * rng.normal(size=areas.shape)}
-    found = plica.infer(model, shapes, of=LAW, noise_um=noise_um)
+    found = plica.infer(model, shapes, of=LAW, noise_um=noise_um, probes=6)
     assert np.corrcoef(np.log(found.factors[LAW]), np.log(truth))[0, 1] > 0.95
     assert found.runs < 30 and found.excess > 2  # the coarse model does not fit to the noise
 
@@ -163,8 +165,9 @@ def test_gradient_of_cells_agrees_with_differences():
         sizes[3] = middles[5] = np.nan
         target = CellTarget(measures, middles + 0.1, 1.1 * sizes, 0.5)
         assert target.seen.sum() == known
-        for first in (None, CellTarget(measures, middles, np.where(sizes > 2, sizes, np.nan), 0.4)):
-            residuals = Residuals([target, CellTarget(measures, middles, sizes, 0.4)], first)
+        first = CellTarget(measures, middles, np.where(sizes > 2, sizes, np.nan), 0.4)
+        for begin, drift in ((None, []), (first, []), (None, [0, 2]), (first, [0, 1])):
+            residuals = Residuals([target, CellTarget(measures, middles, sizes, 0.4)], begin, drift)
             both = [positions, simulation.positions]
             slope = (residuals.gradients(both)[0] * direction).sum()
             ends = [residuals.of([positions + sign * 1e-5 * direction, both[1]])[1].sum() for sign in (1, -1)]
@@ -184,6 +187,58 @@ def test_a_first_shape_shares_its_noise(known, weights):
     assert residuals.of(still)[1].sum() == pytest.approx(counts.sum(), rel=0.02) and counts.sum() == 120_000 * (2 if known else 1)
     probes = np.stack([one.ravel() for one in residuals.probe(still, rng)]) * 0.1
     assert np.cov(probes) == pytest.approx(np.array(weights) / 3, abs=0.02)
+
+
+@pytest.mark.parametrize("has_first", [True, False])
+def test_drift_and_offsets_are_least_squares(has_first):
+    rng = np.random.default_rng(0)
+    shapes = rng.normal(size=(4, 6, 3))
+    shapes[rng.uniform(size=shapes.shape) < 0.2] = np.nan
+    first, *later = [NodeTarget(one, 1.0) for one in shapes]
+    residuals = Residuals(later, first if has_first else None, [0, 2])
+    still = [np.zeros((6, 3))] * 3
+    values = np.concatenate([np.zeros((1, 18)), [target.residuals(one) for target, one in zip(later, still)]])
+    seen = np.stack([target.seen for target in (first, *later)])
+    times, places = np.nonzero(seen[1 - has_first:])
+    times += 1 - has_first
+    moved = [(times == time) & (places % 3 == axis) for time in (1, 2, 3) for axis in (0, 2)]
+    own = [has_first & (places == place) for place in range(18)]
+    design, given = np.array(moved + own, dtype=float).T, values[times, places]
+    apart = given - design @ np.linalg.lstsq(design, given, rcond=None)[0]
+    found, misfits = residuals.of(still)
+    assert misfits.sum() == pytest.approx((apart**2).sum())
+    assert np.array(found)[times[times > 0] - 1, places[times > 0]] == pytest.approx(apart[times > 0])
+    probes = [np.concatenate([one.ravel() for one in residuals.probe(still, rng)])[seen[1:].ravel()] for _ in range(4000)]
+    later_ones = times > 0
+    assert np.cov(np.transpose(probes)) == pytest.approx((np.eye(len(given)) - design @ np.linalg.pinv(design))[np.ix_(later_ones, later_ones)], abs=0.1)
+
+
+def test_shapes_that_drift(block_shape):
+    start, shape = plica.Simulation(BLOCK).positions, block_shape[1]
+    how = dict(of=LAW, noise_um=0.02)
+    still = plica.infer(BLOCK, {0: start, 1: shape}, drift="xyz", **how)
+    moved = plica.infer(BLOCK, {0: start, 1: shape + [5, -3, 1]}, drift="xyz", **how)
+    assert moved.factors[LAW] == pytest.approx(still.factors[LAW], rel=1e-4) and moved.sd[LAW] == pytest.approx(still.sd[LAW], rel=1e-4)
+    assert np.abs(np.log(still.factors[LAW] / block_shape[0] * block_shape[0].mean())).max() < 0.15
+    pushed = plica.infer(BLOCK, {0: start, 1: shape + [0.3, 0, 0]}, **how)
+    assert np.abs(np.log(pushed.factors[LAW] / still.factors[LAW])).max() > 0.1
+
+
+def test_curvature_is_that_of_the_misfit(block_shape):
+    """At the factors that made the shapes, the Gauss-Newton Hessian is the derivative of the gradient."""
+    simulation = plica.Simulation(BLOCK)
+    times, residuals = _residuals(BLOCK, simulation, {0: simulation.positions, 0.5: plica.record(BLOCK, at_min=0.5, strengths={LAW: block_shape[0]}).positions(0.5),
+                                                      1: block_shape[1]}, "apical", 0.1, [0])
+    problem = Problem(BLOCK, [Field(simulation, LAW, None)], times, residuals, 1)
+    vectors, log = problem.fields[0].vectors, np.log(block_shape[0])
+    tape = problem.run(vectors.T @ log, 2)
+    found = problem.curvature(tape, vectors.T @ log, 2)
+    for cell in (0, 6):
+        ends = []
+        for sign in (1, -1):
+            v = vectors.T @ (log + sign * 1e-3 * (np.arange(16) == cell))
+            ends.append(vectors @ problem.gradient(tape._with_strengths(problem.factors(v)), v, 2))
+        assert found[cell] == pytest.approx((ends[0] - ends[1]) / 2e-3, abs=0.01 * found[cell, cell])
 
 
 def test_whole_cells_are_bricks_and_turn():
@@ -235,6 +290,8 @@ WRONG = [
     (dict(knots_min=[1, 0.5]), "knots_min: 1, 0.5; give two or more increasing times"),
     (dict(knots_min=[-1, 0.5]), "knots_min: -1; give times in minutes"),
     (dict(noise_um=0), "noise_um: 0; give a number above 0, in µm"),
+    (dict(drift="xx"), "drift: 'xx'; give axes, such as \"xy\", each once"),
+    (dict(probes=0), "probes: 0"),
     (dict(spread=-1), "spread: -1; give a number above 0"),
     (dict(surface="top"), 'surface: "top"; give "apical", "basal" or "all"'),
 ]

@@ -176,6 +176,7 @@ WRONG = [
     (dict(cells=3), "cells: 3; give what polygons_of_labels or tissue_of_labels returned"),
     (dict(cells=plica.Polygons([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])), 'cells: have no array "label"'),
     (dict(gap_px=-1), "gap_px: -1; give a width in pixels"),
+    (dict(apical="+z"), "apical: '+z', but images show one surface only; omit it, or give volumes"),
 ]
 
 
