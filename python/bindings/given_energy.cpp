@@ -71,8 +71,8 @@ class GivenEnergy final : public Law {
     }
     return joined;
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& /*tissue*/, const TissueChange& /*change*/,
-                                                    std::span<const Vec3> /*positions*/) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& /*tissue*/, const TissueChange& /*change*/,
+                                                  std::span<const Vec3> /*positions*/) const override {
     throw UsageError(label() + ": its groups are nodes of the whole tissue, not of a part of it");
   }
   [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }

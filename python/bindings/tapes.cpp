@@ -150,17 +150,15 @@ void bind_tapes(nb::module_& module) {
             if (side != "apical" && side != "basal")
               throw UsageError("surface: \"" + side + "\"; give \"apical\", \"basal\" or \"all\"");
             std::set<int> nodes;
-            for (const Facet& facet : self.tape().tissue().facets(side == "basal" ? CellSide::basal : CellSide::apical))
+            const Tissue& tissue = self.tape().tissue(self.tape().steps());
+            for (const Facet& facet : tissue.facets(side == "basal" ? CellSide::basal : CellSide::apical))
               for (const NodeId node : facet.nodes) nodes.insert(node.number());
             return array_of(std::vector<int>(nodes.begin(), nodes.end()));
           },
           nb::arg("side"))
       .def_prop_ro("cell_count", [](const TapeOf& self) { return self.tape().tissue().cells.size(); })
-      .def_prop_ro("times_s", [](const TapeOf& self) {
-        std::vector<double> times_s;
-        for (const TapedState& state : self.tape().run().states) times_s.push_back(state.time_s);
-        return array_of(std::move(times_s));
-      });
+      .def_prop_ro("changes", [](const TapeOf& self) { return self.tape().changes(); })
+      .def_prop_ro("times_s", [](const TapeOf& self) { return array_of(self.tape().times_s()); });
 }
 
 }  // namespace plica::python

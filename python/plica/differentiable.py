@@ -67,6 +67,8 @@ class Run:
             scenario.update(dict(zip(self.keys, values.tolist())))
             self._last = name, record(scenario, at_min=times, until_min=max(times, default=None), threads=self.threads,
                                       strengths={} if self.law is None else {self.law: values})
+            if self._last[1].positions().shape != self.shape[-2:]:
+                raise ValueError("positions: cells divide in this run, so the number of nodes changes; end the run before")
         return self._last[1]
 
     def positions(self, values: Array) -> Array:

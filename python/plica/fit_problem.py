@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ._core import version
 from .arguments import number_from, pair_of, pairs_of, text_of, told
 from .errors import FileError, NumericsError
+from .local_energy import LocalEnergy, laws_of, number_of
 from .scenario import Scenario
 from .tapes import Tape, record
 
@@ -63,8 +64,10 @@ class Problem:
     """Scenarios, targets and keys; places are coordinates of the keys. Each run is kept."""
 
     def __init__(self, experiments: list[Experiment], of: Mapping[str, tuple[float, float]],
-                 priors: Optional[Mapping[str, tuple[float, float]]], threads: int) -> None:
-        self.experiments, self.threads = experiments, threads
+                 priors: Optional[Mapping[str, tuple[float, float]]], threads: int,
+                 energies: Optional[Mapping[str, LocalEnergy]] = None) -> None:
+        laws_of(energies)
+        self.experiments, self.threads, self.energies = experiments, threads, dict(energies or {})
         self.bounds = pairs_of(of, "of", "(low, high)")
         self.keys = list(self.bounds)
         if not self.keys:
@@ -82,13 +85,24 @@ class Problem:
         self.file: Optional[Path] = None
 
     def _first_place(self, scenario: Scenario, key: str, scale: Scale) -> float:
-        value = scenario[key]
+        value = self._value(scenario, key)
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise ValueError(f"of: {key} is {told(value)}; choose keys that have a number")
         low, high = self.bounds[key]
         if not low <= value <= high:
             raise ValueError(f"of: {key} is {value:g}, outside {low:g} to {high:g}; set it within the bounds in the first scenario")
         return scale.to(float(value))
+
+    def _value(self, scenario: Scenario, key: str) -> Any:
+        if of_energy := number_of(self.energies, key):
+            value = self.energies[of_energy[0]]._value(of_energy[1])
+            if value == 0:
+                raise ValueError(f"of: {key} is 0, where its change has no scale; give its LocalEnergy a number within the bounds, not 0")
+            return value
+        try:
+            return scenario[key]
+        except KeyError as error:
+            raise ValueError(f"of: {error.args[0]}; choose another key, or set this one in the first scenario") from None
 
     def _priors(self, given: Mapping[str, tuple[float, float]]) -> list[tuple[int, float, float]]:
         """Return index, place and standard deviation of each prior."""
@@ -104,6 +118,23 @@ class Problem:
 
     def values_at(self, place: Array) -> dict[str, float]:
         return {key: scale.back(float(one)) for key, scale, one in zip(self.keys, self.scales, place)}
+
+    def of_scenario(self, place: Array) -> dict[str, float]:
+        """Return the values of the keys of scenarios."""
+        return {key: value for key, value in self.values_at(place).items() if not number_of(self.energies, key)}
+
+    def _unit(self, key: str, value: float) -> float:
+        """Return the unit of a tape's derivative: for a number that differs between groups, its present value."""
+        of_energy = number_of(self.energies, key)
+        return value if of_energy and np.ptp(self.energies[of_energy[0]].numbers[of_energy[1]]) > 0 else 1.0
+
+    def energies_at(self, place: Array) -> dict[str, LocalEnergy]:
+        energies = dict(self.energies)
+        for key, value in self.values_at(place).items():
+            if of_energy := number_of(energies, key):
+                name, number_name = of_energy
+                energies[name] = energies[name]._scaled(number_name, value / self.energies[name]._value(number_name))
+        return energies
 
     def count_until(self, until: Optional[float]) -> int:
         return sum(len(targets_until(one, until)) for one in self.experiments)
@@ -129,7 +160,8 @@ class Problem:
             except RuntimeError as error:  # a linear system of the run is singular, as at a snap
                 raise NumericsError(str(error)) from error
             values = self.values_at(place)
-            by_place = np.array([values[key] if scale.is_log else 1.0 for key, scale in zip(self.keys, self.scales)])
+            by_place = np.array([(values[key] if scale.is_log else 1.0) / self._unit(key, values[key])
+                                 for key, scale in zip(self.keys, self.scales)])
             run["slopes"] = (np.concatenate(rows) * by_place).tolist()
             self._write(place, until)
         of_priors = np.zeros((len(self.priors), len(self.keys)))
@@ -165,17 +197,23 @@ class Problem:
         tapes = []
         for one in self._used(until):
             scenario = one.scenario.copy()
-            scenario.update(self.values_at(place))
+            scenario.update(self.of_scenario(place))
             times = [row.at_min for row in targets_until(one, until)]
             known = sorted({time for time in times if time is not None})
-            tapes.append(record(scenario, at_min=known, until_min=known[-1] if None not in times else None, threads=self.threads))
+            tapes.append(record(scenario, at_min=known, until_min=known[-1] if None not in times else None, threads=self.threads,
+                                energies=self.energies_at(place)))
         self.tapes = (self._name(place, until), tapes)
         return tapes
 
     # The folder has one line per run, after one that identifies the fit. A later line of the same place replaces the earlier one.
     def keep_in(self, folder: Path) -> None:
-        told_of = [version, self.keys, list(self.bounds.values()), self.priors,
-                   [[one.scenario.to_toml(), [[name_of(row.outcome), *row[1:]] for row in one.rows]] for one in self.experiments]]
+        told_of: list[Any] = [
+            version, self.keys, list(self.bounds.values()), self.priors,
+            [[one.scenario.to_toml(), [[name_of(row.outcome), *row[1:]] for row in one.rows]] for one in self.experiments]]
+        for one, energy in self.energies.items():
+            formula = energy.energy if isinstance(energy.energy, str) else energy.energy.__name__
+            numbers = {number: values.tolist() for number, values in energy.numbers.items()}
+            told_of.append([one, formula, energy.groups.tolist(), numbers])
         name = hashlib.sha256(json.dumps(told_of).encode()).hexdigest()
         self.file = folder / "runs.jsonl"
         try:

@@ -22,6 +22,7 @@ from .descent import End, descend
 from .errors import NumericsError, needed
 from .fit_files import write_tables
 from .fit_problem import Problem, Scale, Source, experiments_of, name_of
+from .local_energy import LocalEnergy
 from .names import in_columns, label, name_and_unit
 from .progress import Counter
 from .scenario import Scenario
@@ -110,6 +111,8 @@ class Fit:
         Score and values at the end of each start.
     bounds : dict of str to (float, float)
         Bounds of each key.
+    energies : dict of str to LocalEnergy
+        The force laws that were given, with these values.
     """
 
     values: dict[str, float]
@@ -122,6 +125,7 @@ class Fit:
     starts: list[tuple[float, dict[str, float]]]
     bounds: dict[str, tuple[float, float]]
     _information: Array = field(repr=False)  # of targets and priors, in logarithms
+    energies: dict[str, LocalEnergy] = field(default_factory=dict, repr=False)
 
     @property
     def score(self) -> float:
@@ -233,6 +237,7 @@ def fit(
     *,
     of: Mapping[str, tuple[float, float]],
     priors: Optional[Mapping[str, tuple[float, float]]] = None,
+    energies: Optional[Mapping[str, LocalEnergy]] = None,
     early_min: Optional[float] = None,
     starts: int = 1,
     seed: int = 1,
@@ -256,6 +261,9 @@ def fit(
         their logarithms.
     priors : mapping of str to (float, float), optional
         Normal priors of keys: value and standard deviation, in the key's unit.
+    energies : dict of str to LocalEnergy, optional
+        Force laws by name, as for `record`. Their numbers are keys, ``"energy.NAME.NUMBER"``; of one that differs between groups,
+        a factor on all is fitted, which starts at 1.
     early_min : float, optional
         Fit the targets up to this time first, then all. Advised where later frames depend on contact or a snap.
     starts : int
@@ -305,7 +313,7 @@ def fit(
     >>> round(found.values[key], 2)
     2.0
     """
-    problem = Problem(experiments_of(scenario, targets), of, priors, threads)
+    problem = Problem(experiments_of(scenario, targets), of, priors, threads, energies)
     whole(starts, "starts"), whole(runs, "runs", 2), whole(seed, "seed", 0, 2**32 - 1)
     least = number_from(tolerance, 0, "tolerance", "a number above 0", above=True)
     early = None if early_min is None else number_from(early_min, 0, "early_min", "a time in minutes")
@@ -348,12 +356,13 @@ def _result(problem: Problem, ends: list[End]) -> Fit:
     scenarios = []
     for one in problem.experiments:
         scenarios.append(one.scenario.copy())
-        scenarios[-1].update(problem.values_at(best.place))
+        scenarios[-1].update(problem.of_scenario(best.place))
     return Fit(
         values=problem.values_at(best.place), scenarios=scenarios, misses=misses, jacobian=slopes[:len(misses)],
         covariance=np.asarray(np.linalg.inv(information + np.diag(1e-9 / spread**2)), dtype=np.float64),
         runs=sum(end.runs for end in ends), end=best.end,
-        starts=[(end.score, problem.values_at(end.place)) for end in ends], bounds=problem.bounds, _information=information)
+        starts=[(end.score, problem.values_at(end.place)) for end in ends], bounds=problem.bounds, _information=information,
+        energies=problem.energies_at(best.place))
 
 
 def _title(one: Miss) -> str:

@@ -101,8 +101,12 @@ class Problem:
     def run(self, v: Array, times: int) -> Tape:
         """Record the run until the last of the first times."""
         self.runs += 1
-        return record(self.scenario, at_min=self.times_min[:times], until_min=self.times_min[times - 1],
+        tape = record(self.scenario, at_min=self.times_min[:times], until_min=self.times_min[times - 1],
                       strengths=self.factors(v), threads=self.threads)
+        if tape._core.changes > 0:
+            raise ValueError("infer: cells divide or exchange neighbours before the last shape, so shapes cannot be compared by node or "
+                             "cell; leave out later shapes, or remove division and exchange from the scenario")
+        return tape
 
     def misfits(self, tape: Tape, times: int) -> Array:
         """Return the sum of squared residuals at each of the first times."""

@@ -22,6 +22,7 @@ from .fits import fit
 from .names import in_columns, label as _label
 from .scenario import Scenario
 from .study import Study
+from .tapes import record
 
 if TYPE_CHECKING:
     import pandas
@@ -175,9 +176,7 @@ def posterior(
         If there are no targets, a standard deviation is not positive, bounds are reversed or exceed those of the study, no sample
         agrees, or a target has no gradient.
     ScenarioError
-        If a key or output variable is unknown.
-    KeyError
-        The same, with gradients.
+        If a key or output variable is unknown. With gradients, a ValueError.
 
     Warns
     -----
@@ -292,9 +291,20 @@ def _by_gradients(scenario: Scenario, keys: Mapping[str, tuple[float, float]], t
                   runs: int, seed: int, jobs: Optional[int], progress: bool) -> Posterior:
     ranges = {key: Range(float(low), float(high), False) for key, (low, high) in keys.items()}
     start = scenario.copy()
+    at_rest = record(start, until_min=1e-6)._core
+    for name in targets:
+        try:
+            at_rest.outcome(name, 0)
+        except ValueError as error:
+            raise ValueError(f'posterior: {error}, or give on="emulator"') from None
     for key, one in ranges.items():
-        value = start[key]
-        if isinstance(value, (int, float)) and not one.low <= value <= one.high:
+        try:
+            value = start[key]
+        except KeyError as error:
+            raise ValueError(f"keys: {error.args[0]}; choose another key, or set this one in the scenario") from None
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise ValueError(f"keys: {key} is {told(value)}; choose keys that have a number")
+        if not one.low <= value <= one.high:
             start[key] = (one.low + one.high) / 2
     best = fit(start, targets, of=keys, progress=progress)
     # In the unit cube of the prior, whose variance is 1/12 along what targets leave open.

@@ -44,7 +44,8 @@ class CellsApart {
  public:
   CellsApart(const Model& model, const Vectors& positions, const CellSet& cells);
   [[nodiscard]] bool are_of(const Model& model) const { return model.revision == revision_; }
-  /// Return forces_of_cells in a state of that model.
+  /// Return their static force on nodes, nN; nodes, in a state of that model: elasticity, contraction, applied and cell
+  /// pressures. The other cells exert the opposite, except for drag and the shell.
   [[nodiscard]] Vectors forces(const Model& model, const State& state) const;
 
  private:
@@ -89,10 +90,6 @@ struct Reading {
   std::vector<double> values;
   std::optional<double> number;
 };
-
-/// Static force of cells on nodes, nN; nodes: elasticity, contraction, applied and cell pressures. The other cells
-/// exert the opposite, except for drag and the shell.
-Vectors forces_of_cells(const Model& model, const State& state, const CellSet& cells);
 
 Reading read_monitor(const Monitor& monitor, const Moment& moment);
 

@@ -72,6 +72,7 @@ class Observer {
   }
 
   void follow_division(const Tissue& tissue, const TissueChange& change);
+  [[nodiscard]] const MeasurePlan& plan() const { return plan_; }
 
  private:
   MeasurePlan plan_;

@@ -125,6 +125,13 @@ void add_area_gradient(const Tissue& tissue, CellSide side, std::span<const Vec3
   }
 }
 
+bool is_relative_to_rest(const std::string& name, const MeasurePlan& plan) {
+  return name == "vml_apical_area_ratio" || std::ranges::any_of(plan.monitors, [&](const Monitor& monitor) {
+           return name == monitor.column() &&
+                  (monitor.quantity->name == "displacement" || monitor.quantity->name == "area_ratio");
+         });
+}
+
 SmoothOutcome smooth_outcome(const std::string& name, const Model& model, const MeasurePlan& plan,
                              const Vectors& positions) {
   const auto kept = plan.sets.find("furrow");
@@ -144,7 +151,7 @@ SmoothOutcome smooth_outcome(const std::string& name, const Model& model, const 
   }
   throw UsageError(
       fmt::format("outcome \"{}\": has no gradient here; those that have: {}; add a monitor of area, "
-                  "area_ratio, volume, position or displacement over mean, sum or rms, or give a function",
+                  "area_ratio, volume, position or displacement over mean, sum or rms",
                   name, names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
 }
 

@@ -18,6 +18,9 @@ struct SmoothOutcome {
 SmoothOutcome smooth_outcome(const std::string& name, const Model& model, const MeasurePlan& plan,
                              const Vectors& positions);
 
+/// Whether such an output variable is relative to the reference state.
+bool is_relative_to_rest(const std::string& name, const MeasurePlan& plan);
+
 /// Add the gradient of sum w_c A_c, A_c being areas of cells on one side, as face_areas.
 void add_area_gradient(const Tissue& tissue, CellSide side, std::span<const Vec3> positions,
                        std::span<const double> weights, std::span<Vec3> gradient);

@@ -31,7 +31,7 @@ std::map<WallKey, std::size_t> places_of_walls(const Tissue& tissue) {
 }
 
 const Cortex& lateral_cortex(const Model& model, const std::string& label) {
-  const auto* cortex = dynamic_cast<const Cortex*>(model.laws[place_of_law(model, label, true)].get());
+  const Cortex* cortex = model.laws[place_of_law(model, label, true)]->cortex();
   if (cortex == nullptr || cortex->side() != CellSide::lateral)
     throw UsageError(fmt::format("{}: does not act on lateral faces; name a cortex with faces = \"lateral\"", label));
   return *cortex;
@@ -63,7 +63,7 @@ std::vector<MeasuredWall> measured_walls(const Model& model, const State& state)
           distance(sheet.vertices[from.vertex.index()], sheet.vertices[to.vertex.index()], state.positions);
     }
   for_laws(model, motionless(state, state.velocities), [&](const Law& law, const Step& law_step) {
-    const auto* cortex = dynamic_cast<const Cortex*>(&law);
+    const Cortex* cortex = law.cortex();
     if (cortex == nullptr || cortex->side() != CellSide::lateral) return;
     const std::vector<double> areas = cortex->areas(state.positions), tensions = cortex->tensions(law_step);
     for (std::size_t f = 0; f < areas.size(); ++f) {

@@ -66,8 +66,8 @@ class Constraint {
   [[nodiscard]] virtual double rounding(const Tissue& tissue, double position_rounding) const = 0;
 
   /// Return the constraint for the tissue after a division, with nodes at `positions`.
-  [[nodiscard]] virtual std::unique_ptr<Constraint> after_division(const Tissue& tissue, const TissueChange& change,
-                                                                   std::span<const Vec3> positions) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<Constraint> after_change(const Tissue& tissue, const TissueChange& change,
+                                                                 std::span<const Vec3> positions) const = 0;
   [[nodiscard]] virtual std::vector<double> multipliers_after_division(std::span<const double> multipliers,
                                                                        const TissueChange& /*change*/) const {
     return {multipliers.begin(), multipliers.end()};

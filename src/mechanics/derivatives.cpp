@@ -4,12 +4,6 @@
 
 namespace plica {
 
-void Law::refuse_gradient(std::string_view why) const { throw NoGradient(label() + ": " + std::string(why)); }
-
-const LawDerivatives& Law::derivatives() const {
-  refuse_gradient("this law has no derivatives yet; remove it from the scenario");
-}
-
 const LawDerivatives& static_derivatives() {
   static const LawDerivatives derivatives;
   return derivatives;

@@ -82,8 +82,8 @@ void divide_laws(Model& model, State& state, const TissueChange& change, const V
   state.internals.resize(model.laws.size());
   for (std::size_t l = 0; l < model.laws.size(); ++l) {
     state.internals[l] =
-        model.laws[l]->internal_after_division(state.internals[l], model.tissue, change, {before, state.positions});
-    std::unique_ptr<Law> law = model.laws[l]->after_division(model.tissue, change, state.positions);
+        model.laws[l]->internal_after_change(state.internals[l], model.tissue, change, {before, state.positions});
+    std::unique_ptr<Law> law = model.laws[l]->after_change(model.tissue, change, state.positions);
     law->set_label(model.laws[l]->label());
     model.laws[l] = std::move(law);
   }
@@ -100,7 +100,7 @@ void divide_constraints(Model& model, State& state, const TissueChange& change) 
   }
   model.volumes = model.volumes.divided(model.tissue, change);
   for (auto& constraint : model.constraints)
-    constraint = constraint->after_division(model.tissue, change, state.positions);
+    constraint = constraint->after_change(model.tissue, change, state.positions);
   state.multipliers = std::move(multipliers);
 }
 
@@ -127,7 +127,7 @@ void divide_obstacles(Model& model, State& state, const TissueChange& change) {
   for (auto& obstacle : model.obstacles) {
     std::map<NodeId, std::size_t> place;
     for (const NodeId node : obstacle->nodes()) place[node] = first++;
-    obstacle = obstacle->after_division(model.tissue, change);
+    obstacle = obstacle->after_change(model.tissue, change);
     for (const NodeId node : obstacle->nodes()) {
       const auto known = place.find(node.index() < change.kept_nodes() ? change.node_origin[node.index()] : node);
       forces.push_back(known == place.end() ? 0 : state.obstacle_forces[known->second]);

@@ -2,6 +2,7 @@
 // Theory: docs/theory/division.md.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "mechanics/model.hpp"
@@ -15,6 +16,10 @@ struct PlannedDivision {
   double growth_s = 0;      // from cut to final size of the daughters; 0: immediate
   double volume_ratio = 1;  // final volume of a daughter / volume of the mother
 };
+
+/// Makes a change of a run again, whatever forces say, for a model and a state of the same tissue. Returns false if its
+/// cells would get poor elements, in contrast to the run.
+using RepeatedChange = std::function<bool(Model&, State&)>;
 
 /// Divide the cells at the time of the state. Positions, momentum and tension of contractions do not change; pressures
 /// and velocities are inherited. The target volume of a daughter starts at the volume of its half, its rest shape at

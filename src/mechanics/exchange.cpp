@@ -3,8 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 
 #include "mechanics/division.hpp"
+#include "mechanics/elasticity/turning_elements.hpp"
 #include "mechanics/energy.hpp"
 
 namespace plica {
@@ -113,14 +116,54 @@ void renumber(const TissueChange& change, Model& model, Exchanges& exchanges) {
   });
 }
 
+// Sum of the products of points' distances from their means.
+Mat3 moments_of(std::span<const Vec3> ones, std::span<const Vec3> others) {
+  const auto mean = [](std::span<const Vec3> points) {
+    return Vec3(std::accumulate(points.begin(), points.end(), Vec3(Vec3::Zero())) / static_cast<double>(points.size()));
+  };
+  const Vec3 middle = mean(ones), other_middle = mean(others);
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t i = 0; i < ones.size(); ++i) sum += (ones[i] - middle) * (others[i] - other_middle).transpose();
+  return sum;
+}
+
+// What daughters still have to grow: by cell, the map from its present to its final rest shape, both turned as it is.
+std::map<CellId, Mat3> growth_ahead(const Model& settled, const State& state) {
+  std::map<CellId, Mat3> ahead;
+  for (const Growth& growth : settled.growths) {
+    const Cell& cell = settled.tissue.cells[growth.cell.index()];
+    std::vector<Vec3> now;
+    for (const NodeId corner : cell.corners) now.push_back(state.positions[corner.index()]);
+    const Mat3 inverse = moments_of(cell.rest_shape, cell.rest_shape).inverse();
+    Mat3 turn, stretch;
+    polar(moments_of(now, cell.rest_shape) * inverse, turn, stretch);
+    ahead[growth.cell] = turn * moments_of(growth.rest_to, cell.rest_shape) * inverse * turn.transpose();
+  }
+  return ahead;
+}
+
+// Daughters with other corners grow on from the rest shapes that they have now.
+void continue_growth(const TissueChange& change, const std::map<CellId, Mat3>& ahead, double time_s, Model& model) {
+  for (Growth& growth : model.growths) {
+    if (!change.is_remeshed(growth.cell)) continue;
+    const Cell& cell = model.tissue.cells[growth.cell.index()];
+    growth.rest_from = growth.rest_to = cell.rest_shape;
+    for (Vec3& corner : growth.rest_to) corner = ahead.at(change.origin[growth.cell.index()]) * corner;
+    growth.target_from = *cell.target_volume;
+    growth.start_s = time_s;
+  }
+}
+
 TissueChange turn(Model& model, State& state, std::vector<WallTurn>& turns, double length_um) {
   std::vector<Mat3> inverse(model.tissue.cells.size(), Mat3::Identity());
   for (const WallTurn& one : turns)
     for (const CellId cell : one.cells())
       if (cell.valid()) inverse[cell.index()] = unstretch(model, state, cell);
+  const std::map<CellId, Mat3> ahead = growth_ahead(model, state);
   const Vectors before = state.positions;
   TissueChange change =
       turn_walls(model.tissue, turns, length_um, state.positions, [&](CellId cell) { return inverse[cell.index()]; });
+  continue_growth(change, ahead, state.time_s, model);
   follow_trend(model, change, turns, state);
   follow_change(model, state, change, before);
   return change;
@@ -154,13 +197,13 @@ std::optional<ExchangeOutcome> exchange_neighbours(Model& model, State& state, s
   return std::nullopt;
 }
 
-std::optional<ExchangeOutcome> part_neighbours(Model& model, State& state, const WallTurn& wall, double length_um) {
+std::optional<ExchangeOutcome> part_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
+                                               double length_um) {
   const std::optional<Model> now = grown(model, model, state.internals, state.time_s);
   const double before = energy_of(now ? *now : model, state);
   Model turned(model);
   settle_growth(turned, state);
   State then = state;
-  std::vector<WallTurn> turns = {wall};
   TissueChange change = turn(turned, then, turns, length_um);
   if (turns.empty()) return std::nullopt;
   const double energy = energy_of(turned, then) - before;
@@ -177,6 +220,7 @@ std::optional<ExtrusionOutcome> extrude_cells(Model& model, State& state, std::v
   std::vector<Mat3> inverse;
   for (std::size_t c = 0; c < without.tissue.cells.size(); ++c) inverse.push_back(unstretch(without, state, CellId(c)));
   const std::vector<double> volumes = without.volumes.volumes(state.positions);
+  const std::map<CellId, Mat3> ahead = growth_ahead(without, state);
   const Sheet before = without.tissue.sheet;
   ExtrusionOutcome outcome;
   outcome.change = take_out(without.tissue, cells, then.positions, [&](CellId cell) { return inverse[cell.index()]; });
@@ -186,9 +230,11 @@ std::optional<ExtrusionOutcome> extrude_cells(Model& model, State& state, std::v
     outcome.volume_um3 += volumes[cell.index()];
   }
   outcome.count = static_cast<int>(cells.size());
+  outcome.cells = std::move(cells);
   then.velocities = with_new_nodes(without.tissue, outcome.change, then.velocities);
   then.trend = {};
   renumber(outcome.change, without, then.exchanges);
+  continue_growth(outcome.change, ahead, state.time_s, without);
   follow_change(without, then, outcome.change, state.positions);
   model = std::move(without);
   state = std::move(then);

@@ -24,11 +24,14 @@ struct ExchangeOutcome {
 std::optional<ExchangeOutcome> exchange_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
                                                    double length_um);
 
-/// Turn one wall to this length, um, whatever the forces, if its cells get good elements; empty: they do not.
-std::optional<ExchangeOutcome> part_neighbours(Model& model, State& state, const WallTurn& wall, double length_um);
+/// Turn those of the walls, of which no two share a cell, whose cells get good elements, to this length, um, whatever
+/// the forces; empty: none.
+std::optional<ExchangeOutcome> part_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
+                                               double length_um);
 
 struct ExtrusionOutcome {
   TissueChange change;
+  std::vector<CellId> cells;  // that have left; their numbers before
   int count = 0;
   double volume_um3 = 0;  // of the cells that have left
 };

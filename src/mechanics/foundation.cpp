@@ -115,11 +115,11 @@ double Foundation::rounding(const Step& step, double position_rounding) const {
   return std::sqrt(sum) * position_rounding;
 }
 
-std::unique_ptr<Law> Foundation::after_division(const Tissue& tissue, const TissueChange& change,
-                                                std::span<const Vec3> /*positions*/) const {
+std::unique_ptr<Law> Foundation::after_change(const Tissue& tissue, const TissueChange& change,
+                                              std::span<const Vec3> /*positions*/) const {
   Vectors anchors = with_new_nodes(tissue, change, anchors_);
   tissue.place_hanging_positions(anchors);
-  return std::unique_ptr<Law>(new Foundation(tissue, pattern_.after_division(change), rule_, std::move(anchors)));
+  return std::unique_ptr<Law>(new Foundation(tissue, pattern_.after_change(change), rule_, std::move(anchors)));
 }
 
 std::vector<double> Foundation::past() const {
@@ -134,7 +134,7 @@ std::unique_ptr<Law> Foundation::restored(const Tissue& tissue, const TissueChan
   Vectors anchors;
   for (std::size_t n = 0; n < tissue.node_count(); ++n)
     anchors.emplace_back(past[3 * n], past[3 * n + 1], past[3 * n + 2]);
-  return std::unique_ptr<Law>(new Foundation(tissue, pattern_.after_division(change), rule_, std::move(anchors)));
+  return std::unique_ptr<Law>(new Foundation(tissue, pattern_.after_change(change), rule_, std::move(anchors)));
 }
 
 }  // namespace plica

@@ -38,8 +38,8 @@ class Foundation final : public Law, public LawDerivatives {
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] double rounding(const Step& step, double position_rounding) const override;
 
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> positions) const override;
   /// Anchors of all nodes.
   [[nodiscard]] std::vector<double> past() const override;
   [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const TissueChange& change,

@@ -109,19 +109,19 @@ std::vector<double> CellGrowth::next_internal(const Step& step) const {
   return internal;
 }
 
-std::unique_ptr<Law> CellGrowth::after_division(const Tissue& /*tissue*/, const TissueChange& change,
-                                                std::span<const Vec3> /*positions*/) const {
+std::unique_ptr<Law> CellGrowth::after_change(const Tissue& /*tissue*/, const TissueChange& change,
+                                              std::span<const Vec3> /*positions*/) const {
   auto law = std::make_unique<CellGrowth>(*this);
   follow(change, law->pattern_);
   follow(change, law->axes_);
   return law;
 }
 
-std::vector<double> CellGrowth::internal_after_division(std::span<const double> internal, const Tissue& /*tissue*/,
-                                                        const TissueChange& change, const ChangePositions&) const {
+std::vector<double> CellGrowth::internal_after_change(std::span<const double> internal, const Tissue& /*tissue*/,
+                                                      const TissueChange& change, const ChangePositions&) const {
   std::vector<double> after(1 + change.origin.size(), 0);
   after[0] = internal.front();
-  const std::vector<double> activities = given(internal).after_division(change);
+  const std::vector<double> activities = given(internal).after_change(change);
   after.insert(after.end(), activities.begin(), activities.end());
   return after;
 }

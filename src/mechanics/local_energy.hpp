@@ -80,8 +80,8 @@ class LocalEnergy final : public Law, public LawDerivatives {
   }
 
   /// Strengths go from cells to their daughters.
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> /*positions*/) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> /*positions*/) const override {
     return std::unique_ptr<Law>(new LocalEnergy(tissue, energy_, inherited(change, strengths_)));
   }
 

@@ -269,15 +269,15 @@ std::vector<double> MatrixLayer::next_internal(const Step& step) const {
   return internal;
 }
 
-std::unique_ptr<Law> MatrixLayer::after_division(const Tissue& tissue, const TissueChange& change,
-                                                 std::span<const Vec3> /*positions*/) const {
-  return std::make_unique<MatrixLayer>(tissue, pattern_.after_division(change), rule_);
+std::unique_ptr<Law> MatrixLayer::after_change(const Tissue& tissue, const TissueChange& change,
+                                               std::span<const Vec3> /*positions*/) const {
+  return std::make_unique<MatrixLayer>(tissue, pattern_.after_change(change), rule_);
 }
 
-std::vector<double> MatrixLayer::internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                         const TissueChange& change,
-                                                         const ChangePositions& positions) const {
-  const std::vector<Facet> faces = bonded_faces(tissue, rule_.side, pattern_.after_division(change));
+std::vector<double> MatrixLayer::internal_after_change(std::span<const double> internal, const Tissue& tissue,
+                                                       const TissueChange& change,
+                                                       const ChangePositions& positions) const {
+  const std::vector<Facet> faces = bonded_faces(tissue, rule_.side, pattern_.after_change(change));
   const std::vector<std::size_t> former = first_faces(faces_, pattern_.cells.size()),
                                  present = first_faces(faces, change.origin.size());
   std::vector<double> after(first_number({faces.size(), 0}));

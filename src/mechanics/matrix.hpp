@@ -52,12 +52,12 @@ class MatrixLayer final : public Law, public LawDerivatives {
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
 
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> positions) const override;
   /// Each Gauss point takes elastic strain and thickness from the nearest one of the former cell.
-  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                            const TissueChange& change,
-                                                            const ChangePositions& positions) const override;
+  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& tissue,
+                                                          const TissueChange& change,
+                                                          const ChangePositions& positions) const override;
 
   [[nodiscard]] std::vector<double> program_points_s() const override { return rule_.program.times_s(); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return rule_.program.jumps_s(); }

@@ -105,9 +105,9 @@ Model restored(const Model& initial, const ModelMemory& memory, std::size_t node
     model.laws.back()->set_label(initial.laws[l]->label());
   }
   for (const auto& constraint : initial.constraints)
-    model.constraints.push_back(constraint->after_division(model.tissue, change, positions));
+    model.constraints.push_back(constraint->after_change(model.tissue, change, positions));
   for (const auto& obstacle : initial.obstacles)
-    model.obstacles.push_back(obstacle->after_division(model.tissue, change));
+    model.obstacles.push_back(obstacle->after_change(model.tissue, change));
   return model;
 } catch (const MeshError&) {  // of a law: cells that share a face wrongly
   throw InvalidNumbers();

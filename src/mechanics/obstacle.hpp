@@ -31,8 +31,8 @@ class Obstacle {
   [[nodiscard]] virtual std::span<const NodeId> nodes() const = 0;
   [[nodiscard]] virtual Gap gap(const Vec3& position) const = 0;
 
-  [[nodiscard]] virtual std::unique_ptr<Obstacle> after_division(const Tissue& tissue,
-                                                                 const TissueChange& change) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<Obstacle> after_change(const Tissue& tissue,
+                                                               const TissueChange& change) const = 0;
 
   /// Return the shape of a shell around the tissue; null for others.
   [[nodiscard]] virtual const OuterShape* shell() const { return nullptr; }

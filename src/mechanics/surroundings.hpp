@@ -35,8 +35,8 @@ class NodeLaw : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const final {
     for_nodes(step, [&](std::size_t n, const auto& r) { tangent.add_block(NodeId(n), NodeId(n), matrix(r)); });
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& /*change*/,
-                                                    std::span<const Vec3> /*positions*/) const final {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& /*change*/,
+                                                  std::span<const Vec3> /*positions*/) const final {
     return std::make_unique<Self>(self().remade(tissue));
   }
   [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId>,
@@ -164,9 +164,9 @@ class FacePressure final : public Law {
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
   [[nodiscard]] std::vector<double> program_points_s() const override { return program_.times_s(); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.jumps_s(); }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> /*positions*/) const override {
-    return std::make_unique<FacePressure>(tissue, side_, pattern_.after_division(change), pressure_, program_);
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> /*positions*/) const override {
+    return std::make_unique<FacePressure>(tissue, side_, pattern_.after_change(change), pressure_, program_);
   }
 
  private:

@@ -96,7 +96,7 @@ CellPattern make_pattern(const ActingInput& input, const Origin& origin, std::ve
   if (!origin.mirror.is_used()) return of_whole;
   TissueChange side;
   side.origin = origin.mirror.origins;
-  return of_whole.after_division(side);
+  return of_whole.after_change(side);
 }
 
 bool takes_from(const AblationInput& ablation, const std::string& table, const std::string& faces) {

@@ -218,10 +218,12 @@ CellCut cut_by(DivisionPlane plane, const Tissue& tissue, CellId id, const Vecto
                          : cut_of_polygon(plane, id, tissue, positions, taken);
 }
 
-std::vector<PlannedDivision> due_divisions(const Model& model, const State& state,
-                                           std::span<const DivisionRule> rules) {
+std::vector<PlannedDivision> due_divisions(const Model& model, const State& state, std::span<const DivisionRule> rules,
+                                           std::span<const ExtrusionRule> extrusions) {
   std::vector<PlannedDivision> due;
-  std::vector<char> growing(model.tissue.cells.size(), 0), chosen(model.tissue.cells.size(), 0);
+  if (rules.empty()) return due;
+  std::vector<char> growing(model.tissue.cells.size(), 0);
+  CellSet is_out = leaving_cells(model, state, extrusions);  // leaving, or chosen already
   for (const Growth& growth : model.growths) growing[growth.cell.index()] = !has_come(growth.end_s, state.time_s);
   CutEnds taken;
   for (const DivisionRule& rule : rules) {
@@ -234,9 +236,9 @@ std::vector<PlannedDivision> due_divisions(const Model& model, const State& stat
     const std::vector<double> values = measured(rule.trigger, model, state);
     const CellSet& region = model.tissue.regions.at(rule.region);
     for (std::size_t c = 0; c < region.size(); ++c) {
-      if (!region[c] || chosen[c] || model.tissue.cells[c].lineage.generation >= rule.max_generation) continue;
+      if (!region[c] || is_out[c] || model.tissue.cells[c].lineage.generation >= rule.max_generation) continue;
       if (!at_a_time && (growing[c] || !(values[c] > rule.threshold))) continue;
-      chosen[c] = 1;
+      is_out[c] = true;
       due.push_back(
           {cut_by(rule.plane, model.tissue, CellId(c), state.positions, taken), rule.growth_s, rule.volume_ratio});
     }

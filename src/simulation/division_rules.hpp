@@ -8,6 +8,7 @@
 
 #include "mechanics/division.hpp"
 #include "scenario/scenario.hpp"
+#include "simulation/exchange_rules.hpp"
 
 namespace plica {
 
@@ -35,7 +36,8 @@ CellCut cut_by(DivisionPlane plane, const Tissue& tissue, CellId cell, const Vec
 
 /// Divisions due at the time of the state. Rules with a time since `State::divided_until_s` apply to every cell of
 /// their region; thresholds to cells that are not growing. A cell divides once per call, by the first rule that
-/// applies.
-std::vector<PlannedDivision> due_divisions(const Model& model, const State& state, std::span<const DivisionRule> rules);
+/// applies; none divides that leaves by an extrusion.
+std::vector<PlannedDivision> due_divisions(const Model& model, const State& state, std::span<const DivisionRule> rules,
+                                           std::span<const ExtrusionRule> extrusions = {});
 
 }  // namespace plica

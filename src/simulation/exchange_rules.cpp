@@ -25,20 +25,17 @@ bool is_free(const Model& model, VertexId vertex) {
                              [&](NodeId node) { return std::ranges::count(model.held[node.index()], true) == 0; });
 }
 
-// Whether cells leave, whatever pulls at their walls: a rule takes them, and their apex and base are both much smaller
-// than those of their neighbours.
+// Whether cells part from their neighbours, whatever pulls at their walls: they leave, and their apex and base are both
+// much smaller than those of their neighbours.
 CellSet dwindled_cells(const Model& model, const State& state, std::span<const ExtrusionRule> rules) {
   constexpr double dwindled = 0.25;  // of the mean area of the neighbours
   const Tissue& tissue = model.tissue;
-  CellSet all(tissue.cells.size(), false);
-  if (rules.empty()) return all;
+  CellSet all = leaving_cells(model, state, rules);
+  if (std::ranges::count(all, true) == 0) return all;
   const std::vector<double> apical = face_areas(tissue, CellSide::apical, state.positions),
                             basal = face_areas(tissue, CellSide::basal, state.positions);
   for (std::size_t c = 0; c < all.size(); ++c) {
-    if (std::ranges::none_of(rules, [&](const ExtrusionRule& rule) {
-          return tissue.regions.at(rule.region)[c] && apical[c] < rule.below_um2;
-        }))
-      continue;
+    if (!all[c]) continue;
     double about_apical = 0, about_basal = 0;
     int neighbours = 0;
     for (const Stop& stop : tissue.sheet.cells[c].ring)
@@ -55,9 +52,7 @@ CellSet dwindled_cells(const Model& model, const State& state, std::span<const E
 std::vector<std::pair<double, WallTurn>> free_turns(const Model& model, const State& state, const ExchangeRule& rule,
                                                     double below_um) {
   const Tissue& tissue = model.tissue;
-  CellSet may = tissue.regions.at(rule.region);
-  for (const Growth& growth : model.growths)
-    if (!has_come(growth.end_s, state.time_s)) may[growth.cell.index()] = false;
+  const CellSet& may = tissue.regions.at(rule.region);
   const auto is_recent = [&](const WallTurn& turn) {
     const NodeId begin = column(tissue.sheet, turn.begin).front(), end = column(tissue.sheet, turn.end).front();
     return std::ranges::any_of(state.exchanges.recent, [&](const Exchanges::Turned& one) {
@@ -82,11 +77,26 @@ void count(const ExchangeOutcome& outcome, Exchanges& exchanges) {
   exchanges.energy += outcome.energy;
 }
 
+// Length of the wall of a cell about to leave after it has turned; `length_um`: before.
+double parted_length_um(const ExchangeRule& rule, double length_um) {
+  return std::min(rule.new_length_um, 0.5 * length_um);
+}
+
 Exchanges::Turned turned_now(const Sheet& sheet, const WallTurn& turn, const State& state) {
   return {column(sheet, turn.begin).front(), column(sheet, turn.end).front(), state.time_s};
 }
 
 }  // namespace
+
+CellSet leaving_cells(const Model& model, const State& state, std::span<const ExtrusionRule> rules) {
+  CellSet leaving(model.tissue.cells.size(), false);
+  if (rules.empty()) return leaving;
+  const std::vector<double> areas = face_areas(model.tissue, CellSide::apical, state.positions);
+  for (const ExtrusionRule& rule : rules)
+    for (std::size_t c = 0; c < leaving.size(); ++c)
+      if (model.tissue.regions.at(rule.region)[c] && areas[c] < rule.below_um2) leaving[c] = true;
+  return leaving;
+}
 
 std::vector<WallTurn> due_exchanges(const Model& model, const State& state, const ExchangeRule& rule,
                                     std::span<const ExtrusionRule> extrusions) {
@@ -138,8 +148,7 @@ std::optional<ExchangeOutcome> make_parting(Model& model, State& state, const Ex
   for (const auto& [length, turn] : free_turns(model, state, rule, std::numeric_limits<double>::infinity())) {
     if (!parts(turn.left) && !parts(turn.right)) continue;
     state.exchanges.recent.push_back(turned_now(sheet, turn, state));
-    std::optional<ExchangeOutcome> outcome =
-        part_neighbours(model, state, turn, std::min(rule.new_length_um, 0.5 * length));
+    std::optional<ExchangeOutcome> outcome = part_neighbours(model, state, {turn}, parted_length_um(rule, length));
     if (!outcome) continue;
     count(*outcome, state.exchanges);
     return outcome;
@@ -150,29 +159,48 @@ std::optional<ExchangeOutcome> make_parting(Model& model, State& state, const Ex
 std::optional<ExtrusionOutcome> make_extrusions(Model& model, State& state, std::span<const ExtrusionRule> rules) {
   if (rules.empty()) return std::nullopt;
   const Tissue& tissue = model.tissue;
-  const std::vector<double> areas = face_areas(tissue, CellSide::apical, state.positions);
+  const CellSet leaving = leaving_cells(model, state, rules);
   std::vector<CellId> due;
   CellSet taken(tissue.cells.size(), false);
-  for (const ExtrusionRule& rule : rules)
-    for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
-      const CellId cell(c);
-      if (!tissue.regions.at(rule.region)[c] || !(areas[c] < rule.below_um2) || !can_leave(tissue.sheet, cell))
-        continue;
-      std::vector<CellId> about = {cell};
-      bool is_held = false;
-      for (const Stop& stop : tissue.sheet.cells[c].ring) {
-        about.push_back(tissue.sheet.walls[stop.wall.index()].beyond(cell));
-        is_held |= !is_free(model, stop.vertex);
-      }
-      if (is_held || std::ranges::any_of(about, [&](CellId one) { return taken[one.index()]; })) continue;
-      for (const CellId one : about) taken[one.index()] = true;
-      due.push_back(cell);
+  for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
+    const CellId cell(c);
+    if (!leaving[c] || !can_leave(tissue.sheet, cell)) continue;
+    std::vector<CellId> about = {cell};
+    bool is_held = false;
+    for (const Stop& stop : tissue.sheet.cells[c].ring) {
+      about.push_back(tissue.sheet.walls[stop.wall.index()].beyond(cell));
+      is_held |= !is_free(model, stop.vertex);
     }
+    if (is_held || std::ranges::any_of(about, [&](CellId one) { return taken[one.index()]; })) continue;
+    for (const CellId one : about) taken[one.index()] = true;
+    due.push_back(cell);
+  }
   std::optional<ExtrusionOutcome> outcome = extrude_cells(model, state, std::move(due));
   if (!outcome) return std::nullopt;
   state.exchanges.extruded += outcome->count;
   state.exchanges.extruded_um3 += outcome->volume_um3;
   return outcome;
+}
+
+RepeatedChange repeated_exchange(const ExchangeOutcome& outcome, const ExchangeRule& rule) {
+  return [turns = outcome.turns, length_um = rule.new_length_um](Model& model, State& state) {
+    const auto again = part_neighbours(model, state, turns, length_um);
+    return again && again->turns.size() == turns.size();
+  };
+}
+
+RepeatedChange repeated_parting(const ExchangeOutcome& outcome, const ExchangeRule& rule) {
+  return [turns = outcome.turns, rule](Model& model, State& state) {
+    const double length_um = wall_length(model.tissue, turns.front(), state.positions);
+    return part_neighbours(model, state, turns, parted_length_um(rule, length_um)).has_value();
+  };
+}
+
+RepeatedChange repeated_extrusion(const ExtrusionOutcome& outcome) {
+  return [cells = outcome.cells](Model& model, State& state) {
+    const auto again = extrude_cells(model, state, cells);
+    return again && again->cells.size() == cells.size();
+  };
 }
 
 }  // namespace plica

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mechanics/division.hpp"
 #include "mechanics/exchange.hpp"
 
 namespace plica {
@@ -21,8 +22,11 @@ struct ExtrusionRule {
   double below_um2 = 0;  // apical area of a cell that leaves
 };
 
+/// Cells that leave: in the region of a rule, with a smaller apical area than it says.
+CellSet leaving_cells(const Model& model, const State& state, std::span<const ExtrusionRule> rules);
+
 /// Walls due at the time of the state, the shortest first: shorter than the rule says and shrinking, between cells of
-/// its region that do not grow, with free columns, and not among `State::exchanges.recent`. No two share a cell. Cells
+/// its region, with free columns, and not among `State::exchanges.recent`. No two share a cell. Cells
 /// about to leave gain no neighbour.
 std::vector<WallTurn> due_exchanges(const Model& model, const State& state, const ExchangeRule& rule,
                                     std::span<const ExtrusionRule> extrusions = {});
@@ -38,5 +42,10 @@ std::optional<ExchangeOutcome> make_parting(Model& model, State& state, const Ex
 
 /// Take out the cells of these regions that are small and have come down to three walls, and count them; empty: none.
 std::optional<ExtrusionOutcome> make_extrusions(Model& model, State& state, std::span<const ExtrusionRule> rules);
+
+/// Return what makes these changes again.
+RepeatedChange repeated_exchange(const ExchangeOutcome& outcome, const ExchangeRule& rule);
+RepeatedChange repeated_parting(const ExchangeOutcome& outcome, const ExchangeRule& rule);
+RepeatedChange repeated_extrusion(const ExtrusionOutcome& outcome);
 
 }  // namespace plica

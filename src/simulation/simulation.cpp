@@ -26,7 +26,7 @@ namespace plica {
 namespace {
 
 // In a row, since a resumed run repeats them.
-constexpr int most_steps_with_factor = 5;
+constexpr int most_steps_with_factor = 10;
 
 double max_speed(const State& state) {
   double fastest = 0;
@@ -263,22 +263,27 @@ void Simulation::divide(const std::vector<PlannedDivision>& due) {
   for (const PlannedDivision& one : due)
     for (auto* times_s : {&now_.growth_ends_s, &controls_.program_points_s}) times_s->push_back(now_s + one.growth_s);
   step_length_ = StepLength(controls_);
-  adopt(change);
+  adopt(change, [due](Model& model, State& state) {
+    divide_cells(model, state, due);
+    return true;
+  });
 }
 
 // Turn short walls and take out cells, once after a step. After exchanges, motion and length of steps continue.
 void Simulation::exchange() {
   if (!controls_.exchange || status() != RunStatus::under_way) return;
   if (now_.state.exchanges.until_s == now_.state.time_s) return;
-  if (const auto outcome = make_exchanges(*model_, now_.state, *controls_.exchange, controls_.extrusions))
-    adopt(outcome->change);
-  while (const auto outcome = make_parting(*model_, now_.state, *controls_.exchange, controls_.extrusions))
-    adopt(outcome->change);
-  if (const auto outcome = make_extrusions(*model_, now_.state, controls_.extrusions)) adopt(outcome->change);
+  const ExchangeRule& rule = *controls_.exchange;
+  if (const auto outcome = make_exchanges(*model_, now_.state, rule, controls_.extrusions))
+    adopt(outcome->change, repeated_exchange(*outcome, rule));
+  while (const auto outcome = make_parting(*model_, now_.state, rule, controls_.extrusions))
+    adopt(outcome->change, repeated_parting(*outcome, rule));
+  if (const auto outcome = make_extrusions(*model_, now_.state, controls_.extrusions))
+    adopt(outcome->change, repeated_extrusion(*outcome));
 }
 
 // Follow a change of the model and the state.
-void Simulation::adopt(const TissueChange& change) {
+void Simulation::adopt(const TissueChange& change, const RepeatedChange& again) {
   now_.equilibrium_time_s.reset();  // it counts only after the last change
   grown_.reset();
   now_.changes = std::make_shared<const ModelMemory>(
@@ -288,7 +293,10 @@ void Simulation::adopt(const TissueChange& change) {
   const int steps = steps_with_factor_;
   renew_stepper();
   steps_with_factor_ = steps;  // or runs with many events would not become resumable
-  for (SimulationListener* listener : listeners_) listener->cells_divided(change);
+  for (SimulationListener* listener : listeners_) {
+    listener->change_made(again);
+    listener->cells_divided(change);
+  }
 }
 
 // After a jump of forces the earlier motion predicts nothing: no predictor, no error estimate, a short first step.
@@ -334,7 +342,7 @@ bool Simulation::step(double until_s) {
   if (has_come(until_s, now_.state.time_s)) return false;
   if (!has_begun_) {
     if (now_.state.divided_until_s != now_.state.time_s)  // else done: an exchange may have made more of them due
-      divide(due_divisions(solved(), now_.state, controls_.divisions));
+      divide(due_divisions(solved(), now_.state, controls_.divisions, controls_.extrusions));
     exchange();
   }
   has_begun_ = true;
@@ -353,7 +361,7 @@ bool Simulation::step(double until_s) {
                                                 before.positions, now_.state.positions);
   const State& state = now_.state;
   const double speed = max_speed(state);
-  const std::vector<PlannedDivision> due = due_divisions(solved(), state, controls_.divisions);
+  const std::vector<PlannedDivision> due = due_divisions(solved(), state, controls_.divisions, controls_.extrusions);
   now_.at_equilibrium = speed < controls_.equilibrium_speed_um_per_s && due.empty() &&
                         are_at_rest(before.signals, state.signals, state.time_s - before.time_s) &&
                         !cells_grow(*model_, state.internals, state.time_s) &&

@@ -32,6 +32,8 @@ class SimulationListener {
 
   /// Called after divisions or exchanges, which change model and state of the simulation.
   virtual void cells_divided(const TissueChange& /*change*/) {}
+  /// Called before that, with what makes the same change again.
+  virtual void change_made(const RepeatedChange& /*again*/) {}
 };
 
 /// Simulation advanced by its owner. Instances are independent; a copy branches the run and continues bitwise
@@ -104,7 +106,7 @@ class Simulation {
 
   /// Checkpoint: everything the next step depends on besides the scenario. A reused factorization is forgotten.
   [[nodiscard]] RunMemory memory() const;
-  /// Whether none is in use, so that memory() changes nothing: at the latest after every fifth step, at the time that a
+  /// Whether none is in use, so that memory() changes nothing: at the latest after every tenth step, at the time that a
   /// step was asked for, before a division and at the end.
   [[nodiscard]] bool is_resumable() const { return steps_with_factor_ == 0; }
 
@@ -145,7 +147,7 @@ class Simulation {
   bool advance_signals(const Model& model, State& next);
   void divide(const std::vector<PlannedDivision>& due);
   void exchange();
-  void adopt(const TissueChange& change);
+  void adopt(const TissueChange& change, const RepeatedChange& again);
   void restart_at_a_jump();
   EnergyFlow account_for_energy(const State& before);
   void renew_stepper();

@@ -33,12 +33,6 @@ std::map<std::size_t, std::shared_ptr<const Law>> scale_strengths(Simulation::Pa
   return unscaled;
 }
 
-/// Whether cells have divided or exchanged neighbours.
-struct ChangesOfTissue final : SimulationListener {
-  void cells_divided(const TissueChange& /*change*/) override { are_made = true; }
-  bool are_made = false;
-};
-
 /// Return the parts of a simulation, with the laws of recorded runs (LawDerivatives::smooth).
 Simulation::Parts smooth_parts_of(const Scenario& scenario, const PartsAddition& add) {
   Simulation::Parts parts = parts_of(scenario);
@@ -59,34 +53,74 @@ RunMethod method_of(const RunControls& controls) {
 
 }  // namespace
 
+/// Records steps, and the changes of the tissue between them.
+class Tape::Recording final : public SimulationListener {
+ public:
+  Recording(Tape& tape, const Simulation& simulation)
+      : tape_(tape), simulation_(simulation), last_(simulation.solved_state()) {
+    begin_part({tape.solved_, {}, {}, 0});
+  }
+
+  void step_accepted(const AcceptedStep& /*step*/, const Observation& /*measures*/) override {
+    TapedRun& run = tape_.parts_.back().run;
+    const State& now = simulation_.solved_state();
+    run.rates.push_back(rates_of(last_, now));
+    run.states.push_back(TapedState::of(now));
+    last_ = now;
+    is_changed_ = false;
+  }
+
+  void change_made(const RepeatedChange& again) override {
+    if (is_changed_) {  // one of several at this time
+      TapedChange change = std::move(*tape_.parts_.back().change);
+      tape_.parts_.pop_back();
+      tape_.measure_plans_.pop_back();
+      before_ = std::move(change.before);
+      again_ = std::move(change.again);
+    } else {
+      before_ = last_;
+      again_.clear();
+    }
+    is_changed_ = true;
+    again_.push_back(again);
+    last_ = simulation_.solved_state();
+    begin_part({std::make_shared<const Model>(simulation_.model()),
+                {},
+                TapedChange{before_, again_},
+                tape_.parts_.back().first_state + tape_.parts_.back().run.steps()});
+  }
+
+ private:
+  void begin_part(TapedPart part) {
+    part.run.states.push_back(TapedState::of(last_));
+    part.run.earlier = known_earlier_positions(last_);
+    tape_.parts_.push_back(std::move(part));
+    tape_.measure_plans_.push_back(std::make_shared<const MeasurePlan>(simulation_.observer().plan()));
+  }
+
+  Tape& tape_;
+  const Simulation& simulation_;
+  State last_, before_;
+  std::vector<RepeatedChange> again_;
+  bool is_changed_ = false;
+};
+
 Tape::Tape(const Scenario& scenario, const RecordingInput& input)
     : scenario_(std::make_shared<const Scenario>(scenario)), add_(input.add), strengths_(input.strengths) {
   Simulation::Parts parts = smooth_parts_of(scenario, add_);
   unscaled_ = scale_strengths(parts, strengths_);
   method_ = method_of(parts.controls);
   if (parts.full_model) mirror_ = parts.full_model->mirror();
-  measure_plan_ = std::make_shared<const MeasurePlan>(parts.measure_plan);
   Simulation simulation(std::move(parts));
   simulation.stop_when(input.stop_requested);
-  ChangesOfTissue changes;
-  simulation.listen(changes);
   whole_ = std::make_shared<const Model>(simulation.model());
   solved_ = mirror_.is_used() ? std::make_shared<const Model>(simulation.solved_model()) : whole_;
 
   first_internals_ = simulation.state().internals;
-  run_.states.push_back(TapedState::of(simulation.solved_state()));
+  Recording recording(*this, simulation);
+  simulation.listen(recording);
   const auto run_to = [&](double time_s) {
-    State before = simulation.solved_state();
-    while (simulation.step(time_s)) {
-      if (changes.are_made)
-        throw NoGradient(
-            fmt::format("at t = {:g} s cells divide or exchange neighbours, through which there are no gradients yet; "
-                        "end the run before, or remove this from the scenario",
-                        simulation.time_s()));
-      run_.rates.push_back(rates_of(before, simulation.solved_state()));
-      run_.states.push_back(TapedState::of(simulation.solved_state()));
-      before = simulation.solved_state();
-    }
+    simulation.run_until(time_s);
     if (simulation.status() == RunStatus::failed) throw RecordingFailed(simulation);
     was_stopped_ = input.stop_requested && input.stop_requested();
   };
@@ -101,18 +135,37 @@ Tape::Tape(const Scenario& scenario, const RecordingInput& input)
 }
 
 Vectors Tape::positions(std::size_t state) const {
-  const Vectors& of_side = run_.states.at(state).positions;
+  const Vectors& of_side = taped_state(state).positions;
   return mirror_.is_used() ? mirror_.full_vectors(of_side) : of_side;
 }
 
+const TapedState& Tape::taped_state(std::size_t state) const {
+  const TapedPart& part = part_of(state);
+  return part.run.states.at(state - part.first_state);
+}
+
+std::vector<double> Tape::times_s() const {
+  std::vector<double> times_s;
+  for (std::size_t n = 0; n <= steps(); ++n) times_s.push_back(taped_state(n).time_s);
+  return times_s;
+}
+
 SmoothOutcome Tape::outcome(const std::string& name, std::size_t state) const {
-  const std::optional<Model> later = grown(*whole_, *whole_, first_internals_, run_.states.at(state).time_s);
-  return smooth_outcome(name, later ? *later : *whole_, *measure_plan_, positions(state));
+  const std::size_t part = part_with(parts_, state);
+  const Model& model = model_at(state);
+  if (part > 0 && is_relative_to_rest(name, *measure_plans_[part]))
+    throw NoGradient(
+        fmt::format("outcome \"{}\": is relative to the reference state, which cells that divide or exchange "
+                    "neighbours change; use a monitor of area, volume or position",
+                    name));
+  const auto& internals = part > 0 ? parts_[part].run.states.front().internals : first_internals_;
+  const std::optional<Model> later = grown(model, model, internals, taped_state(state).time_s);
+  return smooth_outcome(name, later ? *later : model, *measure_plans_[part], positions(state));
 }
 
 std::size_t Tape::state_at(double time_s) const {
-  for (std::size_t n = 0; n < run_.states.size(); ++n)
-    if (is_same_instant(run_.states[n].time_s, time_s)) return n;
+  for (std::size_t n = 0; n <= steps(); ++n)
+    if (is_same_instant(taped_state(n).time_s, time_s)) return n;
   throw UsageError(fmt::format("no step ends at {:g} min; record the run with this time in at_min", time_s / 60));
 }
 
@@ -123,6 +176,11 @@ std::unique_ptr<Model> Tape::solved_model(const Variant& changed) const {
 }
 
 ModelPair Tape::parameter(std::string name, const Variant& more, const Variant& less, double difference) const {
+  for (const char* rule : {"division.", "exchange.", "extrusion."})
+    if (name.starts_with(rule))
+      throw NoGradient(name +
+                       ": has no gradient, since which cells divide or exchange neighbours, when and how, are "
+                       "constants of the recorded run; choose another key");
   return model_pair(*solved_, std::move(name), solved_model(more), solved_model(less), difference);
 }
 
@@ -147,7 +205,9 @@ std::optional<RunGradient> Tape::gradient(const OutcomeGradient& outcome, const 
     const auto unscaled = unscaled_.find(*input.law);
     if (unscaled != unscaled_.end()) input.unscaled_law = unscaled->second.get();
   }
-  std::optional<RunGradient> gradient = way_back(*solved_, run_, method_.linear_method, of_solved_side(outcome), input);
+  if (!outcome.empty() && part_of(outcome.rbegin()->first).change) return gradient_by_tangents(outcome, wanted);
+  std::optional<RunGradient> gradient =
+      way_back(*solved_, parts_.front().run, method_.linear_method, of_solved_side(outcome), input);
   if (gradient && input.law && mirror_.is_used()) {
     const std::vector<double> by_side = std::move(gradient->by_strength);
     const double copies = static_cast<double>(mirror_.cells.size()) / static_cast<double>(by_side.size());
@@ -155,6 +215,31 @@ std::optional<RunGradient> Tape::gradient(const OutcomeGradient& outcome, const 
     for (const CellId cell : mirror_.cells) gradient->by_strength.push_back(by_side[cell.index()] / copies);
   }
   return gradient;
+}
+
+std::optional<RunGradient> Tape::gradient_by_tangents(const OutcomeGradient& outcome, const Wanted& wanted) const {
+  const std::size_t cells = wanted.law.empty() ? 0 : solved_->tissue.cells.size();
+  std::vector<ModelPair> of_cells;
+  for (std::size_t c = 0; c < cells; ++c) {
+    constexpr double change = 1e-3;  // forces are proportional to strengths
+    const std::size_t law = place_of_law(*solved_, wanted.law);
+    const auto changed = [&](double by) {
+      const auto given = strengths_.find(wanted.law);
+      std::vector<double> factors = given == strengths_.end() ? std::vector<double>(cells, 1.0) : given->second;
+      factors[c] += by;
+      auto model = std::make_unique<Model>(*solved_);
+      const auto unscaled = unscaled_.find(law);
+      model->laws[law] = with_strengths(unscaled == unscaled_.end() ? *model->laws[law] : *unscaled->second, factors);
+      return model;
+    };
+    of_cells.push_back({wanted.law, changed(change), changed(-change), 2 * change});
+  }
+  TangentInput input{wanted.parameters, wanted.tolerance, wanted.stop_requested};
+  for (const ModelPair& pair : of_cells) input.parameters.push_back(&pair);
+  const auto rows = jacobian({outcome}, input);
+  if (!rows) return std::nullopt;
+  const auto first_cell = rows->front().begin() + static_cast<std::ptrdiff_t>(wanted.parameters.size());
+  return RunGradient{{rows->front().begin(), first_cell}, {first_cell, rows->front().end()}};
 }
 
 std::optional<std::vector<std::vector<double>>> Tape::jacobian(const std::vector<OutcomeGradient>& outcomes,
@@ -174,7 +259,7 @@ std::optional<std::vector<std::vector<double>>> Tape::jacobian(const std::vector
         rows[row][p] += parallel_dot(std::span<const Vec3>(gradient->second), std::span<const Vec3>(by_parameter[p]));
     }
   };
-  if (!tangents(*solved_, run_, method_.linear_method, last, wanted, add)) return std::nullopt;
+  if (!tangents(parts_, method_.linear_method, last, wanted, add)) return std::nullopt;
   return rows;
 }
 
@@ -187,11 +272,11 @@ Tape Tape::replayed(const Variant& changed, const StrengthFactors& strengths) co
   other.unscaled_ = scale_strengths(parts, strengths);
   other.first_internals_ = first_internals_;
   other.mirror_ = mirror_;
-  other.measure_plan_ = measure_plan_;
+  other.measure_plans_ = measure_plans_;
   other.method_ = method_;
   other.solved_ = std::move(parts.model);
   other.whole_ = mirror_.is_used() ? std::make_shared<const Model>(parts.full_model->model()) : other.solved_;
-  other.run_ = plica::replayed(*other.solved_, run_, method_);
+  other.parts_ = plica::replayed(other.solved_, parts_, method_);
   return other;
 }
 

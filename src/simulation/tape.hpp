@@ -42,15 +42,23 @@ struct RecordingInput {
 };
 
 /// Recorded run, and gradients of functions of its positions. Positions and cells are those of the whole embryo, also
-/// if one side is solved. Gradients are exact for the recorded steps: their ends and orders are constants.
+/// if one side is solved. Gradients are exact for the recorded steps: their ends and orders are constants, and so are
+/// which cells divide or exchange neighbours, and after which step. At a state where they do, the tissue is that after.
 class Tape {
  public:
-  /// Run the scenario and record it. Throws as Simulation does; NoGradient if a law has no derivatives or cells divide;
+  /// Run the scenario and record it. Throws as Simulation does; NoGradient if a law has no derivatives;
   /// RecordingFailed.
   Tape(const Scenario& scenario, const RecordingInput& input);
 
+  /// Tissue at the start.
   [[nodiscard]] const Tissue& tissue() const { return whole_->tissue; }
-  [[nodiscard]] const TapedRun& run() const { return run_; }
+  /// Tissue at a state.
+  [[nodiscard]] const Tissue& tissue(std::size_t state) const { return model_at(state).tissue; }
+  [[nodiscard]] std::size_t steps() const { return parts_.back().first_state + parts_.back().run.steps(); }
+  /// Number of times at which cells divided or exchanged neighbours.
+  [[nodiscard]] std::size_t changes() const { return parts_.size() - 1; }
+  /// Return times of all states.
+  [[nodiscard]] std::vector<double> times_s() const;
   /// Whether recording was stopped before the end.
   [[nodiscard]] bool was_stopped() const { return was_stopped_; }
   /// Return positions after a number of steps, um.
@@ -58,7 +66,8 @@ class Tape {
   /// Return the number of the state at a time. UsageError if no step ends then.
   [[nodiscard]] std::size_t state_at(double time_s) const;
 
-  /// Return an output variable after a number of steps, and its gradient by positions (smooth_outcome).
+  /// Return an output variable after a number of steps, and its gradient by positions (smooth_outcome). NoGradient
+  /// after a change of the tissue for outcomes that are relative to the reference state, which follows from the change.
   [[nodiscard]] SmoothOutcome outcome(const std::string& name, std::size_t state) const;
 
   /// Scenario and addition of a changed run; without one, the addition of this run.
@@ -69,7 +78,7 @@ class Tape {
     PartsAddition add;
   };
   /// Return a key, or a number of an added law, as a parameter, from runs with a larger and a smaller value of it.
-  /// NoGradient as model_pair.
+  /// NoGradient as model_pair, and for keys of divisions, exchanges and extrusions, which are constants of the run.
   [[nodiscard]] ModelPair parameter(std::string name, const Variant& more, const Variant& less,
                                     double difference) const;
 
@@ -80,7 +89,8 @@ class Tape {
     std::function<bool()> stop_requested = {};
   };
   /// Return the gradient of an outcome, given by its gradients by positions. If one side is solved, mirror images
-  /// share the derivative by their common strength equally. Empty if stopped.
+  /// share the derivative by their common strength equally. After a change of the tissue it is found by tangents, of
+  /// each cell for strengths. Empty if stopped.
   [[nodiscard]] std::optional<RunGradient> gradient(const OutcomeGradient& outcome, const Wanted& wanted) const;
 
   /// Return the derivatives of outcomes by parameters, one row per outcome, by tangents: up to about twenty parameters,
@@ -94,7 +104,17 @@ class Tape {
   [[nodiscard]] const StrengthFactors& strengths() const { return strengths_; }
 
  private:
+  class Recording;
   Tape() = default;
+  [[nodiscard]] const TapedPart& part_of(std::size_t state) const { return parts_[part_with(parts_, state)]; }
+  [[nodiscard]] const TapedState& taped_state(std::size_t state) const;
+  /// Return the model at a state, of the whole embryo, not grown.
+  [[nodiscard]] const Model& model_at(std::size_t state) const {
+    const TapedPart& part = part_of(state);
+    return part.change ? *part.model : *whole_;
+  }
+  [[nodiscard]] std::optional<RunGradient> gradient_by_tangents(const OutcomeGradient& outcome,
+                                                                const Wanted& wanted) const;
   [[nodiscard]] const PartsAddition& addition_of(const Variant& changed) const {
     return changed.add ? changed.add : add_;
   }
@@ -105,13 +125,13 @@ class Tape {
   std::shared_ptr<const Scenario> scenario_;
   PartsAddition add_;
   std::shared_ptr<const Model> whole_, solved_;
-  std::vector<std::vector<double>> first_internals_;  // laws of the whole embryo
-  std::shared_ptr<const MeasurePlan> measure_plan_;
-  std::map<std::size_t, std::shared_ptr<const Law>> unscaled_;  // laws with other strengths than the scenario's
-  Mirror mirror_;                                               // of the whole embryo to the solved side
+  std::vector<std::vector<double>> first_internals_;               // laws of the whole embryo
+  std::vector<std::shared_ptr<const MeasurePlan>> measure_plans_;  // parts
+  std::map<std::size_t, std::shared_ptr<const Law>> unscaled_;     // laws with other strengths than the scenario's
+  Mirror mirror_;                                                  // of the whole embryo to the solved side
   StrengthFactors strengths_;
   RunMethod method_;
-  TapedRun run_;
+  std::vector<TapedPart> parts_;
   bool was_stopped_ = false;
 };
 

@@ -88,7 +88,7 @@ sets = ["neighbours"]
 frame_every_s = 5
 """
 
-LOST = range(7)  # rows that a kill may cost: five steps in a row with a factor, and one that is being recorded
+LOST = range(12)  # rows that a kill may cost: ten steps in a row with a factor, and one that is being recorded
 
 
 def results(out):

@@ -61,7 +61,7 @@ class Plane final : public Obstacle {
   [[nodiscard]] std::unique_ptr<Obstacle> clone() const override { return std::make_unique<Plane>(*this); }
   [[nodiscard]] std::span<const NodeId> nodes() const override { return nodes_; }
   [[nodiscard]] Gap gap(const Vec3& x) const override { return {normal_.dot(x) - height_um_, normal_, Mat3::Zero()}; }
-  [[nodiscard]] std::unique_ptr<Obstacle> after_division(const Tissue& tissue, const TissueChange&) const override {
+  [[nodiscard]] std::unique_ptr<Obstacle> after_change(const Tissue& tissue, const TissueChange&) const override {
     return std::make_unique<Plane>(tissue, normal_, height_um_);
   }
 
@@ -158,8 +158,8 @@ class WanderingSpring final : public Law {
   }
   [[nodiscard]] std::vector<double> first_internal(const Tissue&) const override { return {0}; }
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override { return {step.internal[0] + 1}; }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const TissueChange&,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue&, const TissueChange&,
+                                                  std::span<const Vec3>) const override {
     return clone();
   }
 
@@ -194,8 +194,8 @@ class Hesitant final : public Law {
     ++asked_;
     return 0.5;
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const TissueChange&,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue&, const TissueChange&,
+                                                  std::span<const Vec3>) const override {
     return clone();
   }
 

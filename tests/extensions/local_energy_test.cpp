@@ -96,7 +96,7 @@ TEST(LocalEnergy, GradientsOfARunByItsNumbersAgreeWithDifferences) {
   };
   constexpr double stiffness = 3, change = 3e-4;
   const Tape tape = Tape(scenario, {.add = with(stiffness).add}).replayed(scenario, {});
-  const std::size_t end = tape.run().steps();
+  const std::size_t end = tape.steps();
   const auto area = [&](const Tape& of) { return of.outcome("top.area_um2", end); };
   const ModelPair pair = tape.parameter("stiffness", with(stiffness + change), with(stiffness - change), 2 * change);
   const auto gradient = tape.gradient({{end, area(tape).gradient}}, {.parameters = {&pair}, .tolerance = 1e-11});

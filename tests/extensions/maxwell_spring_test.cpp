@@ -86,15 +86,15 @@ class MaxwellSprings final : public Law {
   }
 
   // A spring whose edge is cut becomes two in series.
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const TissueChange& change,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue&, const TissueChange& change,
+                                                  std::span<const Vec3>) const override {
     std::vector<Spring> springs;
     for_parts(change, [&](const Spring& part, std::size_t, double) { springs.push_back(part); });
     return std::make_unique<MaxwellSprings>(std::move(springs), relaxation_s_);
   }
-  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue&,
-                                                            const TissueChange& change,
-                                                            const ChangePositions&) const override {
+  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue&,
+                                                          const TissueChange& change,
+                                                          const ChangePositions&) const override {
     std::vector<double> lengths;
     for (const std::size_t first : {std::size_t{0}, springs_.size()})
       for_parts(change, [&](const Spring&, std::size_t whole, double share) {

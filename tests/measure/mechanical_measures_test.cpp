@@ -8,6 +8,7 @@
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "support/divided.hpp"
 #include "support/elements.hpp"
+#include "support/forces_of_cells.hpp"
 #include "support/law_checks.hpp"
 
 namespace {

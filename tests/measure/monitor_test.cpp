@@ -3,6 +3,7 @@
 
 #include "measure/stop_rule.hpp"
 #include "support/divided.hpp"
+#include "support/forces_of_cells.hpp"
 #include "support/loads.hpp"
 
 namespace {

@@ -75,7 +75,7 @@ TEST(SmoothOutcome, OthersAreNamed) {
   } catch (const UsageError& error) {
     EXPECT_STREQ(error.what(),
                  "outcome \"end.position_um\": has no gradient here; those that have: all.volume_um3; add a monitor of "
-                 "area, area_ratio, volume, position or displacement over mean, sum or rms, or give a function");
+                 "area, area_ratio, volume, position or displacement over mean, sum or rms");
   }
 }
 

@@ -1,18 +1,16 @@
 // Exchange of neighbours by forces: one event, and runs with many.
 #include "mechanics/exchange.hpp"
 
-#include "core/threads.hpp"
 #include "measure/cells.hpp"
 #include "measure/neighbours.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/energy.hpp"
+#include "mechanics/model_memory.hpp"
 #include "support/divided.hpp"
 #include "support/prisms.hpp"
 #include "support/ran.hpp"
-#include "support/resumed.hpp"
-#include "support/scenarios.hpp"
 
 namespace {
 
@@ -323,6 +321,67 @@ TEST(ExtrusionOfCells, LeavesItsPlaceToItsNeighbours) {
   for (const double tension : law.tensions(step)) EXPECT_TRUE(std::isfinite(tension));
 }
 
+// Parts a cell from so many neighbours, none of which is `kept`.
+void part(CellId cell, std::size_t count, std::optional<CellId> kept, Model& model, State& state) {
+  for (std::size_t parted = 0; parted < count; ++parted) {
+    std::vector<WallTurn> turns = possible_turns(model.tissue.sheet);
+    std::erase_if(turns, [&](const WallTurn& one) {
+      const CellId other = one.left == cell ? one.right : one.left;
+      return (one.left != cell && one.right != cell) || other == kept;
+    });
+    ASSERT_FALSE(turns.empty());
+    ASSERT_TRUE(part_neighbours(model, state, turns.front(), 1));
+  }
+}
+
+// Rest and target volumes of cells at the end of all growth, by their ids.
+std::map<int, std::pair<double, double>> final_volumes(const Model& model) {
+  const std::optional<Model> later = grown(model, model, {}, 100);
+  const Model& at_end = later ? *later : model;
+  std::map<int, std::pair<double, double>> volumes;
+  for (std::size_t c = 0; c < at_end.tissue.cells.size(); ++c) {
+    const Cell& cell = at_end.tissue.cells[c];
+    volumes[cell.lineage.id] = {rest_volume(at_end.tissue, cell), at_end.volumes.targets()[c]};
+  }
+  return volumes;
+}
+
+// Daughters that grow lose neighbours, by exchange and by extrusion: they become as large as they would have.
+TEST(ExchangeOfCells, LeavesDaughtersTheirFinalSize) {
+  constexpr CellId mother(24), neighbour(25);
+  std::map<int, Vec3> final_corner;
+  for (const Mat3& turn : {Mat3(Mat3::Identity()), Mat3(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()))}) {
+    Model model = foam(tissue_from_prisms(honeycomb(7, 7, 3.5, 10), PolygonSplit::diagonals, 1));
+    const Model initial(model);
+    State state = rest_state(model);
+    for (Vec3& x : state.positions) x = turn * x;
+    const std::vector<PlannedDivision> cut = {{.cut = {mother, 0, 3}, .growth_s = 10, .volume_ratio = 1}};
+    std::vector<CellId> origin = divide_cells(model, state, cut).origin;
+    const auto expected = final_volumes(model);
+    state.time_s = 4;
+    part(mother, 1, neighbour, model, state);
+    state.time_s = 6;
+    part(neighbour, model.tissue.cells[neighbour.index()].sides() - 3, mother, model, state);
+    state.time_s = 8;
+    const auto outcome = extrude_cells(model, state, {neighbour});
+    ASSERT_TRUE(outcome);
+    int grow = 0;
+    for (const Growth& growth : model.growths) {
+      const int id = model.tissue.cells[growth.cell.index()].lineage.id;
+      const auto [corner, is_first] = final_corner.emplace(id, growth.rest_to.front());
+      EXPECT_LE((growth.rest_to.front() - turn * corner->second).norm(), 1e-9);
+      grow += growth.start_s == 8 ? 1 : 0;
+    }
+    EXPECT_GE(grow, 1);
+    for (const auto& [id, volumes] : final_volumes(model)) {
+      EXPECT_NEAR(volumes.first / expected.at(id).first, 1, 1e-9) << id;
+      EXPECT_NEAR(volumes.second / expected.at(id).second, 1, 1e-9) << id;
+    }
+    const ModelMemory memory = memory_of(model, inherited(outcome->change, origin));
+    EXPECT_EQ(final_volumes(restored(initial, memory, model.tissue.node_count())), final_volumes(model));
+  }
+}
+
 // A homogeneous stretch is all by shape, and the sum of both parts is that of the tissue.
 TEST(Neighbours, ShearByShapeIsThatOfAHomogeneousStretch) {
   const Tissue tissue = tissue_from_prisms(honeycomb(6, 6, 4, 10), PolygonSplit::diagonals, 1);
@@ -361,115 +420,5 @@ TEST(Neighbours, ShearIsThatOfTheChosenCells) {
   EXPECT_NEAR(shape_shear(tissue, left, after), 0, 1e-12);
   EXPECT_NEAR(shape_shear(tissue, right, after), 0.5 * std::log(1.02), 1e-9);
 }
-
-const std::string extension = "format = 1\n" + exchanging_sheet + "[output]\nframe_every_s = 0\n";
-
-// From memories around events, by the bytes of a checkpoint, and on three threads.
-void expect_resumable(const std::string& text, const std::vector<std::string>& overrides, bool extrudes = false) {
-  Simulation whole(scenario_of(text, overrides));
-  std::vector<RunMemory> memories;
-  struct Tracer final : SimulationListener {
-    Tracer(const Simulation& of, std::vector<RunMemory>& into) : run(of), all(into) {}
-    void step_accepted(const AcceptedStep&, const Observation&) override { all.push_back(run.memory()); }
-    const Simulation& run;
-    std::vector<RunMemory>& all;
-  } tracer(whole, memories);
-  whole.listen(tracer);
-  EXPECT_EQ(whole.run(), RunStatus::end_time) << whole.failure();
-  whole.stop_listening(tracer);
-  const auto events_of = [](const State& state) { return state.exchanges.count + state.exchanges.extruded; };
-  const int events = events_of(whole.state());
-  EXPECT_GT(events, 2);
-  EXPECT_EQ(whole.state().exchanges.extruded > 0, extrudes);
-  const std::size_t cells = whole.model().tissue.cells.size();
-  EXPECT_EQ(cells + static_cast<std::size_t>(whole.state().exchanges.extruded),
-            36u + static_cast<std::size_t>(whole.divisions()));
-  std::set<int> seen;
-  int resumed = 0;
-  for (std::size_t k = 1; k + 1 < memories.size(); ++k) {
-    // The last memory before, and the first after each event.
-    const State &last = memories[k - 1].state, &now = memories[k].state, &next = memories[k + 1].state;
-    const bool is_near = extrudes ? now.exchanges.extruded != next.exchanges.extruded ||
-                                        now.exchanges.extruded != last.exchanges.extruded
-                                  : events_of(now) != events_of(next) || events_of(now) != events_of(last);
-    if (!is_near) continue;
-    if (++resumed > 4) break;
-    const ThreadCount scope(resumed % 2 == 0 ? 3 : 1);
-    Simulation fresh(scenario_of(text, overrides));
-    go_on_by_bytes(fresh, memories[k]);
-    std::vector<RunMemory> rest;
-    Tracer of_fresh(fresh, rest);
-    fresh.listen(of_fresh);
-    fresh.run();
-    fresh.stop_listening(of_fresh);
-    expect_same(fresh.state(), whole.state());
-    EXPECT_EQ(fresh.model().tissue.elements, whole.model().tissue.elements);
-    EXPECT_EQ(fresh.measures().values, whole.measures().values);
-  }
-  EXPECT_GT(resumed, extrudes ? 0 : 2);
-  std::cout << whole.state().exchanges.count << " exchanges, " << whole.state().exchanges.extruded
-            << " cells have left, resumed from " << resumed << " moments\n";
-}
-
-// Daughters that shrink to small cells, lose their neighbours and leave.
-const std::string leaving = extension + R"([region.middle]
-x_um = [-8, 8]
-y_um = [-8, 8]
-[division.middle]
-region = "middle"
-at_s = 4
-growth_s = 40
-plane = "longest-axis"
-daughter_volume_ratio = 0.25
-[extrusion.middle]
-region = "middle"
-apical_area_below_um2 = 30
-)";
-
-// Cells told to shrink to a twentieth in a sheet whose forces would leave them four or five walls.
-TEST(ExtrusionOfCells, EveryOneThatIsToldLeaves) {
-  Simulation simulation(scenario_of("format = 1\n" + sheet_table(21, 21, 8, 36) + R"(periodic = ["x", "y"]
-[elasticity]
-model = "neo-hookean"
-young_modulus_Pa = 100
-poisson_ratio = 0
-corner_barrier_Pa = 30
-relaxation_min = 1
-[exchange]
-below_um = 0.25
-[region.dying]
-ids = [3, 10, 24]
-[extrusion.dying]
-region = "dying"
-apical_area_below_um2 = 3
-[growth.dying]
-region = "dying"
-final_ratio = 0.05
-in_plane = 1
-program = { time_s = [0, 180], activity = [1, 1] }
-[cortex.lateral]
-region = "all"
-faces = "lateral"
-tension_mN_per_m = 0.1
-[time]
-end_min = 5
-tolerance_um = 0.2
-max_step_s = 6
-[stop]
-at_equilibrium = false
-)"));
-  EXPECT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
-  EXPECT_EQ(simulation.state().exchanges.extruded, 3);
-  EXPECT_LE(simulation.measures()["max_volume_error"].value_or(1), 1e-9);
-  for (const auto& element : simulation.model().tissue.elements)
-    EXPECT_GT(hex_scaled_jacobian(gather(std::span<const Vec3>(simulation.state().positions), element)), 0);
-}
-
-TEST(ExchangeOfCells, GoesOnWithTheSameBits) {
-  expect_resumable(extension, {"time.integrator=\"backward-euler\""});
-  expect_resumable(extension, {"embryo.periodic=[\"x\",\"y\"]"});
-}
-
-TEST(ExtrusionOfCells, GoesOnWithTheSameBits) { expect_resumable(leaving, {}, true); }
 
 }  // namespace

@@ -410,8 +410,8 @@ TEST(GrowthKeys, ErrorsNameTheRemedy) {
       {table + "rate_per_h = 1\nin_plane = 0\naxis = \"along\"\naxis_ratio = 2",
        "6: growth.a.axis_ratio: is not used with in_plane 0, growth in height; remove axis and axis_ratio"},
       {"base = \"drosophila-paper\"\n" + table + "rate_per_h = 1",
-       "2: growth.a: the paper's algorithm does not support growth; set volume.method to \"coupled\" or \"none\" and "
-       "time.scheme to \"newton\", or remove [growth]"},
+       "2: growth.a: the paper's algorithm does not support growth; remove [growth], or set time.scheme to "
+       "\"newton\" and volume.method to \"coupled\" or \"none\""},
   };
   expect_errors(cases, load_errors);
 }

@@ -30,8 +30,8 @@ class DenseCorotational final : public TurningElements {
   }
   [[nodiscard]] std::string_view name() const override { return "dense"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<DenseCorotational>(*this); }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const TissueChange&,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue&, const TissueChange&,
+                                                  std::span<const Vec3>) const override {
     return nullptr;
   }
 

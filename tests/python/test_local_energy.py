@@ -9,6 +9,7 @@ import pytest
 
 import plica
 from plica import FileError, LocalEnergy
+from plica.fit_problem import Problem, experiments_of
 
 pytest.importorskip("sympy")
 
@@ -117,6 +118,43 @@ def test_gradients_by_numbers_agree_with_differences(columns):
     lengths = plica.record(SHEET, until_min=0.2, energies=springs(columns, L=np.linspace(14, 16, len(columns))))
     [check] = plica.check_gradient(lengths, height, of="energy.springs.L")
     assert check.error < 1e-7 and check.gradient == pytest.approx(15 * tape.gradient(height, of="energy.springs.L"), rel=0.1)
+
+
+def test_fits_find_numbers(columns, tmp_path):
+    """One number, and a factor on numbers that differ; with a key of the scenario; and through another process."""
+    lengths = np.linspace(14, 16, len(columns))
+    scenario = plica.Scenario({**SHEET, "stop": {"at_equilibrium": False}})
+    energies = springs(columns, k=3, L=1.1 * lengths)
+    truth = plica.record(scenario, until_min=1, at_min=[0.1, 0.3], energies=energies)
+    targets = {height: {minute: (truth.value(height, at_min=minute), 0.001) for minute in (0.1, 0.3, 1)}}
+    of = {"energy.springs.k": (1, 6), "energy.springs.L": (0.8, 1.3), "elasticity.young_modulus_Pa": (500, 2000)}
+    scenario["elasticity.young_modulus_Pa"] = 1300
+    found = plica.fit(scenario, targets, of=of, energies=springs(columns, L=lengths), priors={"elasticity.young_modulus_Pa": (1000, 20)},
+                      folder=tmp_path)
+    assert found.values["energy.springs.L"] == pytest.approx(1.1, rel=0.01)
+    assert found.values["energy.springs.k"] == pytest.approx(3, rel=0.03)
+    assert found.energies["springs"].numbers["L"] == pytest.approx(1.1 * lengths, rel=0.01)
+    again = plica.fit(scenario, targets, of=of, energies=springs(columns, L=lengths), priors={"elasticity.young_modulus_Pa": (1000, 20)},
+                      folder=tmp_path)
+    assert again.values == found.values
+    problem = Problem(experiments_of(scenario, targets), of, None, 1, springs(columns, L=lengths))
+    place, aside = problem.start + [0.2, 0.2, 0], np.array([0, 1e-3, 0])
+    difference = (problem.residuals(place + aside, None) - problem.residuals(place - aside, None)) / 2e-3
+    assert problem.slopes(place, None)[:, 1] == pytest.approx(difference, rel=0.03)
+    with pytest.raises(FileError, match="holds another fit"):
+        plica.fit(scenario, targets, of=of, energies=springs(columns, L=2 * lengths), priors={"elasticity.young_modulus_Pa": (1000, 20)},
+                  folder=tmp_path)
+
+
+@pytest.mark.parametrize("key, numbers, message", [
+    ("energy.springs.q", {}, "energy.springs.q: not a number of an energy; give one of energy.springs.k, energy.springs.L"),
+    ("energy.springs.k", {"k": 0}, "of: energy.springs.k is 0, where its change has no scale"),
+    ("energy.springs.k", {"k": 9}, "of: energy.springs.k is 9, outside 1 to 6"),
+])
+def test_fits_tell_wrong_numbers(columns, key, numbers, message):
+    with pytest.raises(ValueError) as raised:
+        plica.fit(SHEET, {height: (10, 1)}, of={key: (1, 6)}, energies=springs(columns, **numbers))
+    assert message in str(raised.value)
 
 
 @pytest.mark.parametrize("key", ["energy.springs.q", "energy.other.k", "energy.springs"])

@@ -125,6 +125,31 @@ def test_posteriors_by_gradients_that_are_none():
         plica.posterior(linear(32), targets=TARGETS, on="gradients")
 
 
+@pytest.mark.parametrize("key, message", [
+    ("elasticity.young_modulus", "keys: elasticity.young_modulus: has no value in this scenario; nearest matches: elasticity.young_modulus_Pa, "),
+    ("cortex.top.region", "keys: cortex.top.region is 'all'; choose keys that have a number"),
+    ("cortex.top.relaxation_s", "keys: cortex.top.relaxation_s is 'none'; choose keys that have a number"),
+])
+def test_wrong_keys_of_posteriors_by_gradients_are_told(key, message):
+    with pytest.raises(ValueError) as raised:
+        plica.posterior(plica.Scenario(BLOCK), {key: (400, 1200)}, {"top.area_um2": (2400, 100)}, on="gradients")
+    assert message in str(raised.value)
+
+
+def test_remedies_of_a_target_without_a_gradient_help():
+    """The emulator, and another monitor."""
+    pytest.importorskip("sklearn")
+    smallest = {**BLOCK, "monitor": {"top": {"quantity": "area", "over": "min"}}}
+    with pytest.raises(ValueError) as raised:
+        plica.posterior(plica.Scenario(smallest), {YOUNG: (400, 1200)}, {"top.area_um2": (390, 20)}, on="gradients")
+    assert str(raised.value).endswith('mean, sum or rms, or give on="emulator"') and "function" not in str(raised.value)
+    with pytest.warns(UserWarning):
+        assert plica.posterior(plica.Scenario(smallest), {YOUNG: (400, 1200)}, {"top.area_um2": (390, 20)}, runs=8, samples=50, jobs=1)
+    mean = {**BLOCK, "monitor": {"top": {"quantity": "area", "over": "mean"}}}
+    with pytest.warns(UserWarning):
+        assert plica.posterior(plica.Scenario(mean), {YOUNG: (400, 1200)}, {"top.area_um2": (390, 20)}, on="gradients", runs=10, jobs=1)
+
+
 def test_the_density_about_a_fit_is_one():
     """The mean of 1 over it is the volume of the cube, and of a part of it; also where half of what is drawn falls outside."""
     places, logs = _about(np.array([0.02, 0.5]), np.array([[0.01, 0.004], [0.004, 0.02]]), 20000, np.random.default_rng(5))

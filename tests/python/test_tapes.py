@@ -158,6 +158,41 @@ def test_tensions_are_recovered_from_a_shape():
     assert np.abs(np.exp(found.x) - truth).max() < 0.01
 
 
+SHEET = {"embryo.cell_count": 60, "embryo.length_um": 36, "embryo.width_um": 36, "exchange.below_um": 1.2, "exchange.new_length_um": 1.3,
+         "growth.all": {"region": "all", "rate_per_h": 1, "in_plane": 1},
+         "monitor.length": {"quantity": "position", "axis": "x", "over": "rms"}}
+
+
+def test_gradients_of_a_sheet_that_grows_and_exchanges_neighbours():
+    scenario = plica.Scenario("convergent-extension")
+    scenario.update(SHEET)
+    tape = plica.record(scenario, until_min=1.5)
+    assert tape._core.changes >= 3
+    simulation = plica.Simulation(scenario)
+    simulation.run(until_min=1.5)
+    assert np.array_equal(tape.positions(), simulation.positions)
+    keys = ["growth.all.rate_per_h", "cortex.lateral.direction.strongest", "elasticity.relaxation_s", "elasticity.young_modulus_Pa"]
+    checks = plica.check_gradient(tape, "length.position_um", of=keys)
+    print(checks)
+    assert max(check.error for check in checks) < 1e-5
+
+
+def test_gradients_by_cell_through_division():
+    scenario = plica.Scenario(BLOCK)
+    scenario.update({"division.all": {"region": "all", "at_s": 30, "growth_s": 18}})
+    tape = plica.record(scenario, at_min=0.2)
+    checks = plica.check_gradient(tape, "top.area_um2", of="cortex.apical", by="cell")
+    assert max(check.error for check in checks) < 1e-6
+    with pytest.raises(ValueError, match="cells divide between these times"):
+        tape.value(lambda x: (x.sum(), np.ones_like(x)), at_min=[0.2, 1])
+    with pytest.raises(ValueError, match="outcome \"ratio.area_ratio\": is relative to the reference state"):
+        tape.gradient("ratio.area_ratio", of="elasticity.young_modulus_Pa")
+    with pytest.raises(ValueError, match="division.all.growth_s: has no gradient"):
+        tape.gradient("top.area_um2", of="division.all.growth_s")
+    with pytest.raises(ValueError, match="infer: cells divide or exchange neighbours before the last shape"):
+        plica.infer(scenario, {1: tape.positions(0.2)}, of="cortex.apical", noise_um=0.1)
+
+
 WRONG = [
     (dict(outcome="smallest.area_um2", of="elasticity.young_modulus_Pa"), "has no gradient here; those that have: moved.displacement_um, ratio.area_ratio, side.position_um, top.area_um2;"),
     (dict(outcome="top.area_um2", of="embryo.length_um"), "embryo.length_um: has no gradient, since it changes the tissue"),

@@ -1,6 +1,6 @@
 // Keys of [cortex.NAME], and of the interior of cells: moduli, flow.
-#include "measure/monitor.hpp"
 #include "scenario/advice.hpp"
+#include "support/forces_of_cells.hpp"
 #include "support/resumed.hpp"
 #include "support/scenarios.hpp"
 
@@ -72,8 +72,8 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
       {"[embryo]\nshape = \"block\"\n[enclosed.yolk]\nvolume = \"held\"",
        "3: enclosed.yolk: a block encloses no volume; remove the table, or set embryo.shape to \"pill\" or \"sphere\""},
       {"[enclosed.yolk]\nvolume = \"held\"\n[volume]\nmethod = \"projection\"",
-       "2: enclosed.yolk.volume: \"held\" requires time.scheme \"newton\" and a volume.method other than "
-       "\"projection\"; set volume to \"compliant\", or change time.scheme or volume.method"},
+       "2: enclosed.yolk.volume: the paper's algorithm does not support a held volume; set volume to \"compliant\", or "
+       "set time.scheme to \"newton\" and volume.method to \"coupled\" or \"none\""},
       {"[enclosed.a]\nvolume = \"held\"\n[enclosed.b]\nsurface = \"basal\"\n[vitelline]\ngap_um = 1",
        "4: enclosed.b.surface: another table already constrains this volume; remove one of the two tables"},
       {"[self_contact]\nsurface = \"apical\"\ndistance_um = 10",
@@ -87,8 +87,11 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
       {"[embryo]\nshape = \"block\"\n[vitelline]\ndrag_Pa_s_per_um = 5",
        "4: vitelline.drag_Pa_s_per_um: is not used without a vitelline membrane; remove drag_Pa_s_per_um"},
       {"[vitelline]\ndrag_Pa_s_per_um = 5\n[volume]\nmethod = \"projection\"",
-       "2: vitelline.drag_Pa_s_per_um: requires time.scheme \"newton\" and a volume.method other than \"projection\"; "
-       "remove drag_Pa_s_per_um, or change time.scheme or volume.method"},
+       "2: vitelline.drag_Pa_s_per_um: the paper's algorithm does not support drag along the membrane; remove "
+       "drag_Pa_s_per_um, or set time.scheme to \"newton\" and volume.method to \"coupled\" or \"none\""},
+      {"[self_contact]\nsurface = \"apical\"\n[volume]\nmethod = \"projection\"",
+       "2: self_contact.surface: the paper's algorithm does not support self-contact; set surface to \"none\", or set "
+       "time.scheme to \"newton\" and volume.method to \"coupled\" or \"none\""},
   };
   expect_errors(cases, load_errors);
 }

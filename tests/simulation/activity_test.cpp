@@ -396,6 +396,20 @@ TEST(DivisionRun, ATimeHasComeWhateverRoundingSays) {
   EXPECT_TRUE(due_divisions(model, state, rules).empty());
 }
 
+TEST(DivisionRun, ACellThatLeavesDoesNotDivide) {
+  Model model = row_model(3);
+  model.tissue.regions["first"] = {true, false, false};
+  const std::vector<DivisionRule> rules = {at(0, "all", 10, DivisionPlane::transverse)};
+  const State state = rest_state(model);
+  const double area = face_areas(model.tissue, CellSide::apical, state.positions).front();
+  const auto due_beside = [&](const ExtrusionRule& rule) {
+    return due_divisions(model, state, rules, std::array{rule}).size();
+  };
+  EXPECT_EQ(due_beside({"first", 0.99 * area}), 3u);
+  EXPECT_EQ(due_beside({"first", 1.01 * area}), 2u);
+  EXPECT_EQ(due_beside({"all", 1.01 * area}), 0u);
+}
+
 TEST(DivisionRun, EquilibriumCountsAfterTheLastDivision) {
   Model model = row_model(1);
   RunControls controls = controls_of({at(500, "all", 100, DivisionPlane::transverse)});

@@ -1,7 +1,6 @@
 // Tables of tissues that change, drawn at random with contact, mirror planes, periodic sheets and kites: a scenario is
 // refused by name, or runs with its volumes, without an inverted element, and resumes bitwise identically, some with
-// two threads. One in thirty may fail to converge, and has to name the cell and a remedy: seed 10 does with avx2
-// kernels, where cells that shrink in order to leave divide first.
+// two threads.
 #include <cstdlib>
 #include <regex>
 
@@ -209,7 +208,7 @@ void expect_sound(const Simulation& simulation) {
 }
 
 struct Counts {
-  int refused = 0, ran = 0, failed = 0, divided = 0, exchanged = 0, extruded = 0;
+  int refused = 0, ran = 0, divided = 0, exchanged = 0, extruded = 0;
 };
 
 bool step_with(int threads, Simulation& simulation) {
@@ -234,12 +233,7 @@ void run(const Scenario& scenario, int threads, Counts& counts) {
     }
     if (testing::Test::HasFailure()) return;
   }
-  if (whole.status() == RunStatus::failed) {
-    EXPECT_TRUE(std::regex_match(whole.failure(), std::regex(".* in cell [0-9]+ at t = .*; set .*")))
-        << whole.failure();
-    ++counts.failed;
-    return;
-  }
+  EXPECT_NE(whole.status(), RunStatus::failed) << whole.failure();
   ++counts.ran;
   counts.divided += whole.divisions();
   counts.exchanged += whole.solved_state().exchanges.count;
@@ -266,11 +260,9 @@ TEST(RandomCombinations, AreRefusedByNameOrRun) {
       ++counts.refused;
     }
   }
-  std::cout << counts.refused << " refused, " << counts.failed << " failed, " << counts.ran
-            << " ran: " << counts.divided << " divisions, " << counts.exchanged << " exchanges, " << counts.extruded
-            << " extrusions\n";
+  std::cout << counts.refused << " refused, " << counts.ran << " ran: " << counts.divided << " divisions, "
+            << counts.exchanged << " exchanges, " << counts.extruded << " extrusions\n";
   EXPECT_GE(counts.ran, count / 3);
-  EXPECT_LE(counts.failed, count / 30);
 }
 
 }  // namespace

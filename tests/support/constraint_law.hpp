@@ -30,8 +30,8 @@ class ConstraintLaw final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override {
     constraint_->add_tangent(step.positions, multipliers_, tangent);
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const TissueChange&,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue&, const TissueChange&,
+                                                  std::span<const Vec3>) const override {
     return nullptr;  // not divided in tests
   }
 

@@ -22,8 +22,8 @@ class NodalForces final : public Law {
   }
   void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}
   void add_tangent(const Step&, TangentSink&) const override {}
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3>) const override {
     Vectors loads = loads_;
     loads.resize(change.kept_nodes());
     loads.resize(tissue.node_count(), Vec3::Zero());

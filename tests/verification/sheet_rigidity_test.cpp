@@ -51,8 +51,8 @@ class PerimeterElasticity final : public Law {
     for (const auto& ring : rings_) groups.add(ring);
     return groups;
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange&,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange&,
+                                                  std::span<const Vec3>) const override {
     return std::make_unique<PerimeterElasticity>(tissue, stiffness_, rest_);
   }
 

@@ -238,7 +238,7 @@ std::vector<double> CellPattern::with_ablation_jumps(std::vector<double> times_s
 CellPattern::CellPattern(const CellSet& who)
     : cells(who), strengths(who.begin(), who.end()), delays_s(who.size(), 0.0) {}
 
-CellPattern CellPattern::after_division(const TissueChange& change) const {
+CellPattern CellPattern::after_change(const TissueChange& change) const {
   CellPattern after = *this;
   follow(change, after);
   return after;

@@ -115,7 +115,7 @@ struct CellPattern {
   [[nodiscard]] std::vector<double> with_ablation_jumps(std::vector<double> times_s) const;
 
   /// Return the pattern after a division; daughters inherit from the mother cell.
-  [[nodiscard]] CellPattern after_division(const TissueChange& change) const;
+  [[nodiscard]] CellPattern after_change(const TissueChange& change) const;
 
   static auto parts_by_cell(auto& pattern) {
     return std::tie(pattern.cells, pattern.strengths, pattern.delays_s, pattern.pulse_periods_s, pattern.pulse_phases,
@@ -160,7 +160,7 @@ class GivenActivities {
 
   [[nodiscard]] std::span<const double> internal() const { return given_; }
   /// Return activities after a division; daughters inherit from the mother cell.
-  [[nodiscard]] std::vector<double> after_division(const TissueChange& change) const {
+  [[nodiscard]] std::vector<double> after_change(const TissueChange& change) const {
     return given_.empty() ? std::vector<double>() : inherited(change, std::vector(given_.begin(), given_.end()));
   }
 

@@ -340,8 +340,8 @@ std::vector<Spring> inherit(const Spring& spring, CellId low, CellId high, const
 
 }  // namespace
 
-std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const TissueChange& change,
-                                                 std::span<const Vec3> positions) const {
+std::unique_ptr<Law> Contraction::after_change(const Tissue& tissue, const TissueChange& change,
+                                               std::span<const Vec3> positions) const {
   std::map<CellId, CellId> now, other_daughter;
   for (std::size_t c = 0; c < change.origin.size(); ++c) now.try_emplace(change.origin[c], CellId(c));
   for (const auto& [low, high] : change.daughters) other_daughter[low] = high;
@@ -358,7 +358,7 @@ std::unique_ptr<Law> Contraction::after_division(const Tissue& tissue, const Tis
     for (Spring& part : inherit(spring, daughter->first, daughter->second, tissue, positions))
       springs.push_back(std::move(part));
   }
-  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_division(change));
+  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_change(change));
 }
 
 std::unique_ptr<Law> Contraction::restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
@@ -370,7 +370,7 @@ std::unique_ptr<Law> Contraction::restored(const Tissue& tissue, const TissueCha
     if (spring.nodes.size() < 2 || !std::ranges::all_of(spring.nodes, is_node) ||
         !spring.cell.is_among(tissue.cells.size()))
       throw InvalidNumbers();
-  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_division(change));
+  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_change(change));
 }
 
 }  // namespace plica

@@ -73,16 +73,16 @@ class Contraction final : public Law, public LawDerivatives {
   [[nodiscard]] std::unique_ptr<Law> with_strengths(std::span<const double> factors) const override;
   /// Split each cut edge into two springs in series, with k scaled to keep the tension; edges of the new facet have
   /// none. Diagonals stay whole.
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> positions) const override;
   /// Springs depend on positions at each division.
   [[nodiscard]] std::vector<double> past() const override { return as_numbers(springs_); }
   [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
                                               std::span<const double> past) const override;
-  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& /*tissue*/,
-                                                            const TissueChange& change,
-                                                            const ChangePositions&) const override {
-    return GivenActivities(internal).after_division(change);
+  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& /*tissue*/,
+                                                          const TissueChange& change,
+                                                          const ChangePositions&) const override {
+    return GivenActivities(internal).after_change(change);
   }
 
   [[nodiscard]] const Program& program() const { return program_; }

@@ -46,6 +46,7 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   Cortex(const Tissue& tissue, CellPattern pattern, CortexRule rule, Kernels kernels = chosen_kernels());
 
   [[nodiscard]] std::string_view name() const override { return "cortex"; }
+  [[nodiscard]] const Cortex* cortex() const override { return this; }
   [[nodiscard]] double energy(const Step& step) const override;
   [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
 
@@ -62,16 +63,16 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   /// area), also as parts of a face that was cut. The reference area of a face between daughters is its present one.
   /// Where cells meet by an exchange, it is the mean of both cells' other lateral faces; if areas relax, such a face
   /// begins at its stress-free area.
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> positions) const override;
   /// Reference areas of faces born in divisions depend on positions then, and all on growth: reference areas / areas in
   /// the undeformed tissue.
   [[nodiscard]] std::vector<double> past() const override;
   [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
                                               std::span<const double> past) const override;
-  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                            const TissueChange& change,
-                                                            const ChangePositions&) const override;
+  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& tissue,
+                                                          const TissueChange& change,
+                                                          const ChangePositions&) const override;
 
   [[nodiscard]] std::vector<double> program_points_s() const override;
   [[nodiscard]] std::vector<double> program_jumps_s() const override;

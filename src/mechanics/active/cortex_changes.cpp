@@ -175,9 +175,9 @@ CortexRule Cortex::rule_after(const TissueChange& change) const {
   return rule;
 }
 
-std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const TissueChange& change,
-                                            std::span<const Vec3> positions) const {
-  auto after = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_after(change), kernels_);
+std::unique_ptr<Law> Cortex::after_change(const Tissue& tissue, const TissueChange& change,
+                                          std::span<const Vec3> positions) const {
+  auto after = std::make_unique<Cortex>(tissue, pattern_.after_change(change), rule_after(change), kernels_);
   after->noise_ = noise_;
   after->inherit_faces(Origins(*this, change), *this, positions);
   return after;
@@ -185,7 +185,7 @@ std::unique_ptr<Law> Cortex::after_division(const Tissue& tissue, const TissueCh
 
 std::unique_ptr<Law> Cortex::restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
                                       std::span<const double> past) const {
-  auto law = std::make_unique<Cortex>(tissue, pattern_.after_division(change), rule_after(change), kernels_);
+  auto law = std::make_unique<Cortex>(tissue, pattern_.after_change(change), rule_after(change), kernels_);
   const std::size_t faces = law->faces_.size();
   law->is_remeshed_ = past.size() == faces + 1;
   if (past.size() != faces && !law->is_remeshed_) throw InvalidNumbers();
@@ -195,13 +195,12 @@ std::unique_ptr<Law> Cortex::restored(const Tissue& tissue, const TissueChange& 
   return law;
 }
 
-std::vector<double> Cortex::internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                    const TissueChange& change,
-                                                    const ChangePositions& positions) const {
+std::vector<double> Cortex::internal_after_change(std::span<const double> internal, const Tissue& tissue,
+                                                  const TissueChange& change, const ChangePositions& positions) const {
   const Memory before = memory(internal);
   std::vector<double> after, factors;
   if (flows() || !before.factors.empty()) {
-    const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_division(change));
+    const std::vector<Face> faces = acting_faces(tissue, rule_.side, pattern_.after_change(change));
     const Origins origins(*this, change);
     const auto all = origins.of(faces);
     std::vector<double> now(faces.size(), 1);
@@ -218,7 +217,7 @@ std::vector<double> Cortex::internal_after_division(std::span<const double> inte
     if (!states.empty())
       std::ranges::copy(inherited(change, std::vector(states.begin(), states.end())), std::back_inserter(after));
   std::ranges::copy(factors, std::back_inserter(after));
-  std::ranges::copy(before.given.after_division(change), std::back_inserter(after));
+  std::ranges::copy(before.given.after_change(change), std::back_inserter(after));
   return after;
 }
 

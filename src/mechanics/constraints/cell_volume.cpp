@@ -193,9 +193,9 @@ void Dilatation::add_tangent(const Step& step, TangentSink& tangent) const {
       tangent.accepts_concurrent_blocks());
 }
 
-std::unique_ptr<Law> Dilatation::after_division(const Tissue& tissue, const TissueChange& change,
-                                                std::span<const Vec3>) const {
-  return std::make_unique<Dilatation>(tissue, bulk_moduli_.after_division(tissue, change), cells_are_exact_, kernels_);
+std::unique_ptr<Law> Dilatation::after_change(const Tissue& tissue, const TissueChange& change,
+                                              std::span<const Vec3>) const {
+  return std::make_unique<Dilatation>(tissue, bulk_moduli_.after_change(tissue, change), cells_are_exact_, kernels_);
 }
 
 std::unique_ptr<Law> Dilatation::grown(const Tissue& tissue, std::span<const ElementId> elements,

@@ -56,8 +56,8 @@ class CellVolumes final : public Constraint {
   [[nodiscard]] CellVolumes grown(const Tissue& tissue) const;
   /// Return the constraints after a division; daughters inherit pressures.
   [[nodiscard]] CellVolumes divided(const Tissue& tissue, const TissueChange& change) const;
-  [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const TissueChange& change,
-                                                           std::span<const Vec3> /*positions*/) const override {
+  [[nodiscard]] std::unique_ptr<Constraint> after_change(const Tissue& tissue, const TissueChange& change,
+                                                         std::span<const Vec3> /*positions*/) const override {
     return std::make_unique<CellVolumes>(divided(tissue, change));
   }
   [[nodiscard]] std::vector<double> multipliers_after_division(std::span<const double> pressures,
@@ -93,8 +93,8 @@ class Dilatation final : public BatchLaw<Dilatation, 8> {
   [[nodiscard]] double energy(const Step& step) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> positions) const override;
   [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements,
                                            std::span<const GrowthTensor> tensors) const override;
 

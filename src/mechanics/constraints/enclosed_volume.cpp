@@ -147,8 +147,8 @@ double EnclosedVolume::rounding(const Tissue& /*tissue*/, double position_roundi
   return std::sqrt(gradient_scale_) * position_rounding / target_;
 }
 
-std::unique_ptr<Constraint> EnclosedVolume::after_division(const Tissue& tissue, const TissueChange& /*change*/,
-                                                           std::span<const Vec3> /*positions*/) const {
+std::unique_ptr<Constraint> EnclosedVolume::after_change(const Tissue& tissue, const TissueChange& /*change*/,
+                                                         std::span<const Vec3> /*positions*/) const {
   return std::make_unique<EnclosedVolume>(tissue, target_);
 }
 

@@ -46,8 +46,8 @@ class EnclosedVolume final : public Constraint, public EnclosedFluid {
                    TangentSink& tangent) const override;
   [[nodiscard]] double gradient_scale(std::size_t /*function*/) const override { return gradient_scale_; }
   [[nodiscard]] double rounding(const Tissue& tissue, double position_rounding) const override;
-  [[nodiscard]] std::unique_ptr<Constraint> after_division(const Tissue& tissue, const TissueChange& change,
-                                                           std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Constraint> after_change(const Tissue& tissue, const TissueChange& change,
+                                                         std::span<const Vec3> positions) const override;
 
   /// Return the volume, um^3, and V/V_0, over the target.
   [[nodiscard]] double volume(std::span<const Vec3> positions) const;
@@ -117,8 +117,8 @@ class ElasticVolume final : public Law, public EnclosedFluid {
     return volume_.parts().nodes;
   }
   /// Return a law without force for a part of the tissue, which encloses nothing.
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& /*change*/,
-                                                    std::span<const Vec3> /*positions*/) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& /*change*/,
+                                                  std::span<const Vec3> /*positions*/) const override {
     // Cutting cells makes more facets; fewer are left where only some cells are kept.
     const bool is_part = tissue.basal_facets.size() < volume_.facet_count();
     return std::make_unique<ElasticVolume>(tissue, is_part ? 0 : bulk_modulus_, volume_.targets()[0]);

@@ -64,8 +64,8 @@ class Ties final : public Law {
     return 2 * stiffness_ * position_rounding * std::sqrt(static_cast<double>(ties_.size()));
   }
   /// Return a law without ties for a part of the tissue. (Cells of a slice do not divide.)
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const TissueChange&,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue&, const TissueChange&,
+                                                  std::span<const Vec3>) const override {
     return std::make_unique<Ties>(std::vector<Tie>{}, stiffness_);
   }
 

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "mechanics/contact/nonconforming_edges.hpp"
 
 namespace plica {
@@ -212,15 +213,29 @@ std::optional<Pair> SelfContact::pair_of(std::size_t p, std::span<const Touch> k
   return best;
 }
 
+// Pairs of a point, at most two.
+std::vector<Pair> SelfContact::pairs_at(std::size_t p, std::span<const Touch> known, const Surface& surface) const {
+  std::vector<Pair> pairs;
+  const auto add = [&](const Pair& pair) {
+    // Points beyond the boundary of an open surface are not above it.
+    const Vec3 out = pair.q.at(surface.outward);
+    if (out.dot(pair.apart(surface.x)) <= rule_.distance * out.norm()) pairs.push_back(pair);
+  };
+  const std::optional<Pair> first = pair_of(p, known, surface, nullptr);
+  if (!first) return pairs;
+  add(*first);
+  // Where three ridges meet, a point touches two.
+  if (first->apart(surface.x).norm() < reach_of_second())
+    if (const std::optional<Pair> second = pair_of(p, known, surface, &*first)) add(*second);
+  return pairs;
+}
+
 std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<const double> known) const {
-  const std::span<const Pair> before = pairs_of(known);
-  auto last = before.begin();  // that of the point or of one after it; then those of edges
+  const std::span<const Pair> before = pairs_of(known);  // of points, by point; then of edges
+  const auto of_points = before.first(std::ranges::find_if(before, &Pair::is_of_edges) - before.begin());
   return pairs(positions, before, [&](std::size_t p, std::span<const Vec3> x) {
-    const auto is_known = [&] { return last != before.end() && !last->is_of_edges(); };
-    while (is_known() && last->first < p) ++last;
-    const auto first_known = last;
-    while (is_known() && last->first == p) ++last;
-    return touches_of({first_known, last}, x);
+    const auto of_p = std::ranges::equal_range(of_points, static_cast<double>(p), {}, &Pair::first);
+    return touches_of({of_p.begin(), of_p.end()}, x);
   });
 }
 
@@ -229,21 +244,11 @@ std::vector<Pair> SelfContact::pairs(std::span<const Vec3> positions, std::span<
                                      const KnownOf& known_of) const {
   const Vectors of_whole = mirror_.is_used() ? mirror_.full_vectors(positions) : Vectors();
   const Surface surface(*this, mirror_.is_used() ? std::span<const Vec3>(of_whole) : positions);
+  std::vector<std::vector<Pair>> at(points_.size());
+  const auto find_at = [&](std::size_t p) { at[p] = pairs_at(p, known_of(p, surface.x), surface); };
+  parallel_for(at.size(), find_at, long_bodies);
   std::vector<Pair> pairs;
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    const std::vector<Touch> known_of_p = known_of(p, surface.x);
-    const std::optional<Pair> first = pair_of(p, known_of_p, surface, nullptr);
-    if (!first) continue;
-    const auto add = [&](const Pair& pair) {
-      // Points beyond the boundary of an open surface are not above it.
-      const Vec3 out = pair.q.at(surface.outward);
-      if (out.dot(pair.apart(surface.x)) <= rule_.distance * out.norm()) pairs.push_back(pair);
-    };
-    add(*first);
-    // Where three ridges meet, a point touches two.
-    if (first->apart(surface.x).norm() < reach_of_second())
-      if (const std::optional<Pair> second = pair_of(p, known_of_p, surface, &*first)) add(*second);
-  }
+  for (const std::vector<Pair>& found : at) pairs.insert(pairs.end(), found.begin(), found.end());
   // Edges are searched only near the points of pairs.
   std::vector<char> is_searched(surface.x.size(), 0);
   for (const Pair& pair : pairs)
@@ -415,13 +420,12 @@ void SelfContact::add_group(std::span<const KeptNode> of_whole, NodeGroups& grou
   groups.add(nodes);
 }
 
-std::unique_ptr<Law> SelfContact::after_division(const Tissue& tissue, const TissueChange&,
-                                                 std::span<const Vec3>) const {
+std::unique_ptr<Law> SelfContact::after_change(const Tissue& tissue, const TissueChange&, std::span<const Vec3>) const {
   return std::make_unique<SelfContact>(tissue, rule_);
 }
 
-std::vector<double> SelfContact::internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                         const TissueChange&, const ChangePositions& positions) const {
+std::vector<double> SelfContact::internal_after_change(std::span<const double> internal, const Tissue& tissue,
+                                                       const TissueChange&, const ChangePositions& positions) const {
   if (positions.after.empty()) return {};  // of a part: contact belongs to none
   const SelfContact after(tissue, rule_);
   const std::span<const Pair> before = pairs_of(internal);

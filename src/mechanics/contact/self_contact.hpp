@@ -70,13 +70,13 @@ class SelfContact final : public Law, public LawDerivatives, public InternalChan
   [[nodiscard]] bool accepts(std::span<const double> internal, const Tissue& /*tissue*/) const override {
     return internal.empty() || internal.size() % numbers_of_pair == 1;
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> positions) const override;
   /// Return pairs found again. A point may be as far beyond the surface as the nearest point that touched before. For a
   /// part of the tissue there are none, since contact belongs to no part.
-  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                            const TissueChange& change,
-                                                            const ChangePositions& positions) const override;
+  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& tissue,
+                                                          const TissueChange& change,
+                                                          const ChangePositions& positions) const override;
 
   /// Pairs keep their features.
   [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
@@ -126,6 +126,7 @@ class SelfContact final : public Law, public LawDerivatives, public InternalChan
   template <class KnownOf>
   [[nodiscard]] std::vector<Pair> pairs(std::span<const Vec3> positions, std::span<const Pair> before,
                                         const KnownOf& known_of) const;
+  [[nodiscard]] std::vector<Pair> pairs_at(std::size_t p, std::span<const Touch> known, const Surface& surface) const;
   /// Find the pair of a point with the nearest facing triangle; after a `first` pair, with the nearest one of another
   /// part of the surface. `known`: those of the point in the previous step.
   [[nodiscard]] std::optional<Pair> pair_of(std::size_t point, std::span<const Touch> known, const Surface& surface,

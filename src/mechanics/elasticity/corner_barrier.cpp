@@ -139,8 +139,8 @@ NodeGroups CornerBarrier::node_groups(std::span<const double> /*internal*/) cons
   return groups;
 }
 
-std::unique_ptr<Law> CornerBarrier::after_division(const Tissue& tissue, const TissueChange&,
-                                                   std::span<const Vec3>) const {
+std::unique_ptr<Law> CornerBarrier::after_change(const Tissue& tissue, const TissueChange&,
+                                                 std::span<const Vec3>) const {
   return std::make_unique<CornerBarrier>(tissue, modulus_, threshold_);
 }
 

@@ -27,8 +27,8 @@ class CornerBarrier final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> internal) const override;
   [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> positions) const override;
 
  private:
   struct Corner;  // corner below the threshold, at given positions

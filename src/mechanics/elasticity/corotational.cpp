@@ -96,9 +96,9 @@ double Corotational::energy(const Step& step) const {
   return chunks_.sum_over_elements([&](std::size_t e) { return energies[e]; });
 }
 
-std::unique_ptr<Law> Corotational::after_division(const Tissue& tissue, const TissueChange& change,
-                                                  std::span<const Vec3>) const {
-  return std::make_unique<Corotational>(tissue, moduli_.after_division(tissue, change), shear_viscosity_, kernels_);
+std::unique_ptr<Law> Corotational::after_change(const Tissue& tissue, const TissueChange& change,
+                                                std::span<const Vec3>) const {
+  return std::make_unique<Corotational>(tissue, moduli_.after_change(tissue, change), shear_viscosity_, kernels_);
 }
 
 }  // namespace plica

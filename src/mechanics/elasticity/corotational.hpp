@@ -28,8 +28,8 @@ class Corotational final : public BatchLaw<Corotational, 8>, public LawDerivativ
   [[nodiscard]] std::string_view name() const override { return "elasticity"; }
   [[nodiscard]] double energy(const Step& step) const override;
   [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override;
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> positions) const override;
 
   [[nodiscard]] bool overbends() const override { return true; }
   [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }

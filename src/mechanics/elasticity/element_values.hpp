@@ -24,7 +24,7 @@ class ElementValues {
 
   /// Return values after a change. Cells of as many elements keep theirs; others take on each level that of its first
   /// element, since the elements of a level are alike where cells change.
-  [[nodiscard]] std::vector<Value> after_division(const Tissue& tissue, const TissueChange& change) const {
+  [[nodiscard]] std::vector<Value> after_change(const Tissue& tissue, const TissueChange& change) const {
     std::vector<Value> after(tissue.elements.size());
     for (std::size_t c = 0; c < tissue.cells.size(); ++c) {
       const Cell& cell = tissue.cells[c];

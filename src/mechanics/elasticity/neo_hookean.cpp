@@ -235,9 +235,9 @@ void NeoHookean::add_internal_gradient(const Step& step, std::span<const double>
   for (std::size_t place = elements_.size(); place < places(); ++place) add(place);
 }
 
-std::unique_ptr<Law> NeoHookean::after_division(const Tissue& tissue, const TissueChange& change,
-                                                std::span<const Vec3>) const {
-  return std::make_unique<NeoHookean>(tissue, materials_.after_division(tissue, change), kernels_);
+std::unique_ptr<Law> NeoHookean::after_change(const Tissue& tissue, const TissueChange& change,
+                                              std::span<const Vec3>) const {
+  return std::make_unique<NeoHookean>(tissue, materials_.after_change(tissue, change), kernels_);
 }
 
 std::optional<Mat3> NeoHookean::elastic_stretch(std::span<const double> internal, std::span<const Vec3> positions,
@@ -257,8 +257,8 @@ std::optional<Mat3> NeoHookean::elastic_stretch(std::span<const double> internal
   return Mat3(sum / weights);
 }
 
-std::vector<double> NeoHookean::internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                        const TissueChange& change, const ChangePositions&) const {
+std::vector<double> NeoHookean::internal_after_change(std::span<const double> internal, const Tissue& tissue,
+                                                      const TissueChange& change, const ChangePositions&) const {
   if (!flows_) return {};
   std::vector<std::vector<std::size_t>> of_cell(std::ranges::max(element_cell_).index() + 1);  // elements before
   for (std::size_t e = 0; e < elements_.size(); ++e) of_cell[element_cell_[e].index()].push_back(e);

@@ -43,11 +43,11 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8>, public LawDerivatives {
 
   /// Return materials after a division; daughters inherit modulus and relaxation, and each Gauss point the C_p of the
   /// nearest Gauss point of the mother in the reference state. Remeshed cells have not flowed from their rest shapes.
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> positions) const override;
-  [[nodiscard]] std::vector<double> internal_after_division(std::span<const double> internal, const Tissue& tissue,
-                                                            const TissueChange& change,
-                                                            const ChangePositions&) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& tissue,
+                                                          const TissueChange& change,
+                                                          const ChangePositions&) const override;
 
   [[nodiscard]] std::optional<Mat3> elastic_stretch(std::span<const double> internal, std::span<const Vec3> positions,
                                                     std::span<const ElementId> elements) const override;

@@ -65,8 +65,7 @@ void ShapeMemory::fit(const Tissue& tissue, std::size_t e) {
   preload_[e] = springs_.preload * share * share;
 }
 
-std::unique_ptr<Law> ShapeMemory::after_division(const Tissue& tissue, const TissueChange&,
-                                                 std::span<const Vec3>) const {
+std::unique_ptr<Law> ShapeMemory::after_change(const Tissue& tissue, const TissueChange&, std::span<const Vec3>) const {
   return std::make_unique<ShapeMemory>(tissue, springs_, shear_viscosity_);
 }
 

@@ -39,8 +39,8 @@ class ShapeMemory final : public TurningElements, public LawDerivatives {
 
   [[nodiscard]] std::string_view name() const override { return "shape memory"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<ShapeMemory>(*this); }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue& tissue, const TissueChange& change,
-                                                    std::span<const Vec3> positions) const override;
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
+                                                  std::span<const Vec3> positions) const override;
 
   [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
   void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,

@@ -23,7 +23,7 @@ class Vitelline final : public Obstacle {
   [[nodiscard]] std::unique_ptr<Obstacle> clone() const override { return std::make_unique<Vitelline>(*this); }
   [[nodiscard]] std::span<const NodeId> nodes() const override { return nodes_; }
   [[nodiscard]] Gap gap(const Vec3& position) const override { return shell_.gap(position); }
-  [[nodiscard]] std::unique_ptr<Obstacle> after_division(const Tissue& tissue, const TissueChange&) const override {
+  [[nodiscard]] std::unique_ptr<Obstacle> after_change(const Tissue& tissue, const TissueChange&) const override {
     return std::make_unique<Vitelline>(tissue, shell_);
   }
 

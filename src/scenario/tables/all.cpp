@@ -3,7 +3,7 @@
 
 namespace plica {
 
-// Each in the file of its name, but: [elasticity.NAME] in elasticity.cpp; [volume], [vitelline], [dynamics] in
+// Each in the file of its name, but: [elasticity.NAME] in elasticity.cpp; [vitelline], [dynamics] in
 // surroundings.cpp; [stop], [stop.NAME], [expect] in monitor.cpp; [time], [measure], [furrow], [output] in run.cpp.
 ScenarioTable top_table(), embryo_table(), region_table(), elasticity_table(), region_elasticity_table(),
     volume_table(), vitelline_table(), dynamics_table(), contraction_table(), cortex_table(), signal_table(),

@@ -89,31 +89,27 @@ void check_axes(const EmbryoInput& embryo, Input& input) {
 }
 
 /// Checks a list of mirror planes or periodic directions (`key` of [embryo]): no repetition, division or projection.
-/// `cells`, `feature`: how messages name them.
+/// `cells`: how messages name them.
 void check_repeats(const Scenario& scenario, const std::vector<std::string>& named, const std::string& key,
-                   const std::string& cells, const std::string& feature, Input& input) {
+                   const std::string& cells, Input& input) {
   const std::string address = "embryo." + key;
   if (std::set(named.begin(), named.end()).size() < named.size())
     return input.report(address, fmt::format("\"{}\" occurs twice", named.back()), "list each direction once");
   if (!scenario.divisions.empty())
     input.report(address, cells + " cannot divide", fmt::format("remove {}, or [division]", key));
-  if (is_as_in_the_paper(scenario))
-    input.report(
-        address, "the paper's algorithm does not support " + feature,
-        fmt::format("remove {}, or set time.scheme to \"newton\" and volume.method to \"coupled\" or \"none\"", key));
 }
 
 void check_mirror(const Scenario& scenario, Input& input) {
   const std::string address = "embryo.mirror";
   if (scenario.embryo.mirror.empty() || !input.sound(address)) return;
-  check_repeats(scenario, scenario.embryo.mirror, "mirror", "mirrored cells", "mirror planes", input);
+  check_repeats(scenario, scenario.embryo.mirror, "mirror", "mirrored cells", input);
 }
 
 void check_periods(const Scenario& scenario, Input& input) {
   const EmbryoInput& embryo = scenario.embryo;
   const std::string address = "embryo.periodic";
   if (embryo.periodic.empty() || !input.sound(address)) return;
-  check_repeats(scenario, embryo.periodic, "periodic", "cells of a periodic sheet", "periodic sheets", input);
+  check_repeats(scenario, embryo.periodic, "periodic", "cells of a periodic sheet", input);
   for (const std::string& axis : embryo.periodic)
     if (input.sound("embryo.curvature_per_um") && embryo.curvature_per_um.size() == 2 &&
         embryo.curvature_per_um[meaning_of(words::periods, axis)] != 0)

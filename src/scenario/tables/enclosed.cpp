@@ -19,11 +19,7 @@ void check_enclosed(Scenario& scenario, Input& input) {
     if (state != EnclosedState::compliant)
       drop(key, it.bulk_modulus_Pa, {}, table + ".volume", fmt::format("is not used with volume \"{}\"", it.volume),
            "remove bulk_modulus_Pa, or set volume to \"compliant\"", input);
-    if (state == EnclosedState::held && is_as_in_the_paper(scenario))
-      input.report(table + ".volume",
-                   "\"held\" requires time.scheme \"newton\" and a volume.method other than \"projection\"",
-                   "set volume to \"compliant\", or change time.scheme or volume.method");
-    else if (state != EnclosedState::free && std::exchange(is_kept, true))
+    if (state != EnclosedState::free && std::exchange(is_kept, true))
       input.report(table + ".surface", "another table already constrains this volume", "remove one of the two tables");
     // With cell volumes, enclosed volume and shell volume all fixed, cells can only slide along the shell.
     if (state == EnclosedState::held && scenario.vitelline.enabled && scenario.vitelline.gap_um == 0 &&

@@ -16,9 +16,6 @@ void check_laws(const Scenario& scenario, Input& input) {
   if (model_of(scenario.elasticity) != ElasticModel::neo_hookean)
     refuse("elasticity.model", fmt::format("\"{}\" has no rule for new shapes", scenario.elasticity.model),
            "set model to \"neo-hookean\"");
-  if (is_as_in_the_paper(scenario))
-    refuse("time.scheme", "the paper's algorithm is not possible",
-           "set time.scheme to \"newton\" and volume.method to \"coupled\"");
   if (!scenario.contractions.empty())
     refuse("contraction." + scenario.contractions.begin()->first, "springs along edges are not possible",
            "use [cortex.NAME], whose faces follow");

@@ -33,7 +33,7 @@ void check_size(const std::string& table, const G& growth, Input& input) {
                  "set two times or more, with an activity above 0");
 }
 
-void check(const std::string& table, G& growth, const Scenario& scenario, Input& input) {
+void check(const std::string& table, G& growth, const Scenario& /*scenario*/, Input& input) {
   check_size(table, growth, input);
   if (input.sound(table + ".axis") && input.sound(table + ".axis_ratio")) {
     if (growth.axis_ratio && growth.axis.empty())
@@ -44,9 +44,6 @@ void check(const std::string& table, G& growth, const Scenario& scenario, Input&
       input.report(table + ".axis_ratio", "is not used with in_plane 0, growth in height",
                    "remove axis and axis_ratio");
   }
-  if (is_as_in_the_paper(scenario))
-    input.report(table, "the paper's algorithm does not support growth",
-                 "set volume.method to \"coupled\" or \"none\" and time.scheme to \"newton\", or remove [growth]");
 }
 
 GrowthRule rule_of(const G& input) {

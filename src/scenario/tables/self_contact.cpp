@@ -16,10 +16,6 @@ void check_contact(Scenario& scenario, Input& input) {
     input.report("self_contact.friction", "is not used with surface \"none\"",
                  "remove friction, or set surface, for example to \"apical\"");
   if (contact.surface == "none") return;
-  if (is_as_in_the_paper(scenario))
-    input.report("self_contact.surface",
-                 "self-contact requires time.scheme \"newton\" and a volume.method other than \"projection\"",
-                 "set surface to \"none\", or change time.scheme or volume.method");
   if (contact.search_um < 2 * contact.distance_um && input.sound("self_contact.search_um"))
     input.report("self_contact.search_um", fmt::format("{} is below twice distance_um", contact.search_um),
                  "set search_um to several times distance_um");

@@ -1,10 +1,13 @@
 #include "solver/sensitivity/tangents.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <type_traits>
 #include <utility>
 
+#include "mechanics/contact/self_contact.hpp"
 #include "mechanics/internal_change.hpp"
 #include "solver/sensitivity/step_terms.hpp"
 
@@ -84,21 +87,33 @@ Numbers slopes(const Numbers& more, const Numbers& less, double difference) {
   return result;
 }
 
+/// Pass through the steps of one part of a run.
 class ForwardPass {
  public:
-  ForwardPass(const Model& model, const TapedRun& run, LinearMethod method, const TangentInput& input)
-      : model_(model), run_(run), input_(input), solver_(model, method) {
-    const Vectors still(model.tissue.node_count(), Vec3::Zero());
-    LawInternals unchanged;
-    for (const auto& internal : run.states.front().internals) unchanged.emplace_back(internal.size(), 0.0);
-    tangents_.assign(input.parameters.size(), {still, still, unchanged, {}});
-    by_parameter_.assign(input.parameters.size(), still);
-    if (!model.signals.empty())
-      for (std::size_t p = 0; p < tangents_.size(); ++p) begin_signals(*input.parameters[p], tangents_[p]);
-  }
+  /// `pairs`: models of the parameters in this part.
+  ForwardPass(const TapedPart& part, LinearMethod method, const TangentInput& input,
+              std::span<const ModelPair* const> pairs)
+      : model_(*part.model), run_(part.run), input_(input), pairs_(pairs), solver_(model_, method) {}
 
-  bool go(std::size_t last_state, const TakeTangents& take) {
-    for (std::size_t n = 0; n < last_state; ++n) {
+  /// Start with what parameters do before the first step.
+  void begin() {
+    const Vectors still(model_.tissue.node_count(), Vec3::Zero());
+    LawInternals unchanged;
+    for (const auto& internal : run_.states.front().internals) unchanged.emplace_back(internal.size(), 0.0);
+    tangents_.assign(pairs_.size(), {still, still, unchanged, {}});
+    if (!model_.signals.empty())
+      for (std::size_t p = 0; p < tangents_.size(); ++p) begin_signals(*pairs_[p], tangents_[p]);
+  }
+  /// Start with these derivatives.
+  void begin(std::vector<Tangent> tangents) { tangents_ = std::move(tangents); }
+  std::vector<Tangent> end() && { return std::move(tangents_); }
+
+  /// `steps`: their number; states are numbered from `first_state`.
+  bool go(std::size_t steps, std::size_t first_state, const TakeTangents& take) {
+    by_parameter_.clear();
+    for (const Tangent& tangent : tangents_) by_parameter_.push_back(tangent.positions);
+    take(first_state, by_parameter_);
+    for (std::size_t n = 0; n < steps; ++n) {
       if (input_.stop_requested && input_.stop_requested()) return false;
       constexpr std::size_t enough_for_a_factor = 3;
       if (tangents_.size() >= enough_for_a_factor) solver_.renew();
@@ -106,7 +121,7 @@ class ForwardPass {
       Step step = run_.step(n);
       if (later) step.grown = &*later;
       for (std::size_t p = 0; p < tangents_.size(); ++p) pass(n, p, step);
-      take(n + 1, by_parameter_);
+      take(first_state + n + 1, by_parameter_);
     }
     return true;
   }
@@ -133,7 +148,7 @@ class ForwardPass {
   void pass(std::size_t n, std::size_t p, const Step& step) {
     const Iterate at = run_.at_end_of(n);
     Tangent& tangent = tangents_[p];
-    const ModelPair& pair = *input_.parameters[p];
+    const ModelPair& pair = *pairs_[p];
     const TermsWanted wanted{std::vector<bool>(model_.laws.size(), true), !model_.signals.empty()};
     StepTerms by_parameter = step_terms(*pair.more, run_, n, wanted);
     subtract(step_terms(*pair.less, run_, n, wanted), pair.difference, by_parameter);
@@ -235,17 +250,94 @@ class ForwardPass {
   const Model& model_;
   const TapedRun& run_;
   const TangentInput& input_;
+  std::span<const ModelPair* const> pairs_;
   ExactSolve solver_;
   std::vector<Tangent> tangents_;      // parameters
   std::vector<Vectors> by_parameter_;  // parameters: of positions at the end of the present step
 };
 
+/// State before a change, moved along a tangent.
+State moved_along(const State& before, double size, const Tangent& tangent) {
+  State state = before;
+  state.positions = moved_by(before.positions, size, tangent.positions);
+  for (std::size_t l = 0; l < state.internals.size(); ++l)
+    for (std::size_t i = 0; i < state.internals[l].size(); ++i) state.internals[l][i] += size * tangent.internals[l][i];
+  if (!tangent.signals.empty()) state.signals = changed_by(before.signals, size, tangent.signals);
+  if (state.trend.step_s == 0) return state;
+  Vectors& velocities = state.trend.mean_velocities.empty() ? state.velocities : state.trend.mean_velocities;
+  for (std::size_t n = 0; n < velocities.size(); ++n)
+    velocities[n] += size / state.trend.step_s * (tangent.positions[n] - tangent.earlier[n]);
+  return state;
+}
+
+/// Throw NoGradient if contacts, which a change rebuilds, act in this part.
+void require_no_contact(const TapedPart& part) {
+  for (std::size_t l = 0; l < part.model->laws.size(); ++l) {
+    const SelfContact* contact = part.model->laws[l]->self_contact();
+    for (const TapedState& state : part.run.states)
+      if (contact != nullptr && !SelfContact::pairs_of(state.internals[l]).empty())
+        throw NoGradient(fmt::format(
+            "{}: at t = {:g} s, after cells have divided or exchanged neighbours, surfaces are near each other; "
+            "contacts are then rebuilt without a derivative, so end the run before",
+            part.model->laws[l]->label(), state.time_s));
+  }
+}
+
+/// Take both models of a parameter, and its tangent, through the change with which a part begins.
+ModelPair through_change(const TapedPart& part, const ModelPair& pair, Tangent& tangent) {
+  const TapedChange& change = *part.change;
+  const auto changed = [&](const Model& before, double size) {
+    auto model = std::make_unique<Model>(before);
+    State state = moved_along(change.before, size, tangent);
+    change.make(*model, state);
+    require_same_change(*model, state, part);
+    return std::pair(std::move(model), std::move(state));
+  };
+  auto [more, at_more] = changed(*pair.more, 0.5 * pair.difference);
+  auto [less, at_less] = changed(*pair.less, -0.5 * pair.difference);
+  const auto slopes_of = [&](const auto& of) { return slopes(of(at_more), of(at_less), pair.difference); };
+  const auto vector_slopes = [&](const Vectors& of_more, const Vectors& of_less) {
+    Vectors slope;
+    for (std::size_t n = 0; n < of_more.size(); ++n) slope.push_back((of_more[n] - of_less[n]) / pair.difference);
+    return slope;
+  };
+  tangent.positions = vector_slopes(at_more.positions, at_less.positions);
+  tangent.earlier = vector_slopes(known_earlier_positions(at_more), known_earlier_positions(at_less));
+  tangent.internals = slopes_of([](const State& state) { return state.internals; });
+  tangent.signals = slopes_of([](const State& state) { return state.signals; });
+  return {pair.name, std::move(more), std::move(less), pair.difference};
+}
+
 }  // namespace
 
-bool tangents(const Model& model, const TapedRun& run, LinearMethod method, std::size_t last_state,
-              const TangentInput& input, const TakeTangents& take) {
-  require_derivatives(model);
-  return ForwardPass(model, run, method, input).go(last_state, take);
+bool tangents(std::span<const TapedPart> parts, LinearMethod method, std::size_t last_state, const TangentInput& input,
+              const TakeTangents& take) {
+  require_derivatives(*parts.front().model);
+  std::vector<ModelPair> owned;
+  std::vector<const ModelPair*> pairs = input.parameters;
+  std::vector<Tangent> at_change;
+  for (const TapedPart& part : parts.first(1 + part_with(parts, last_state))) {
+    if (part.change) {
+      require_no_contact(part);
+      std::vector<ModelPair> changed;
+      for (std::size_t p = 0; p < pairs.size(); ++p) changed.push_back(through_change(part, *pairs[p], at_change[p]));
+      owned = std::move(changed);
+      pairs.clear();
+      for (const ModelPair& pair : owned) pairs.push_back(&pair);
+    }
+    ForwardPass pass(part, method, input, pairs);
+    if (part.change)
+      pass.begin(std::move(at_change));
+    else
+      pass.begin();
+    const std::size_t steps = std::min(part.run.steps(), last_state - part.first_state);
+    const auto take_own = [&](std::size_t state, std::span<const Vectors> by_parameter) {
+      if (&parts[part_with(parts, state)] == &part) take(state, by_parameter);  // else it is that before a change
+    };
+    if (!pass.go(steps, part.first_state, take_own)) return false;
+    at_change = std::move(pass).end();
+  }
+  return true;
 }
 
 }  // namespace plica

@@ -25,8 +25,10 @@ struct TangentInput {
 /// Callback after each step: number of the state, and derivatives of its positions by each parameter (nodes).
 using TakeTangents = std::function<void(std::size_t state, std::span<const Vectors> by_parameter)>;
 
-/// Pass through the steps of a run up to a state. Returns false if stopped. Throws as way_back.
-bool tangents(const Model& model, const TapedRun& run, LinearMethod method, std::size_t last_state,
-              const TangentInput& input, const TakeTangents& take);
+/// Pass through the steps and changes of a run up to a state. Both models of a parameter go through each change, from
+/// states along its tangent. Returns false if stopped. Throws as way_back; NoGradient if a change has another result
+/// there, or if contacts follow it.
+bool tangents(std::span<const TapedPart> parts, LinearMethod method, std::size_t last_state, const TangentInput& input,
+              const TakeTangents& take);
 
 }  // namespace plica

@@ -282,7 +282,7 @@ TEST(PatternRule, PulsesSwellAndEbbAboutOne) {
   // Daughters pulse with their mother.
   TissueChange division;
   division.origin = {CellId(5), CellId(2), CellId(5)};
-  const CellPattern after = found.after_division(division);
+  const CellPattern after = found.after_change(division);
   for (int k = 0; k < 3; ++k) EXPECT_EQ(after.pulse(CellId(k), 33), found.pulse(division.origin[k], 33));
 }
 
@@ -333,7 +333,7 @@ TEST(PatternRule, AblationsTakeStrengthForAWhileOrForGood) {
   EXPECT_EQ(pattern.with_ablation_points({}), (std::vector<double>{60, 60, 80, 80, 90, 130}));
   TissueChange division;
   division.origin = {CellId(2), CellId(0), CellId(2)};
-  const CellPattern after = pattern.after_division(division);
+  const CellPattern after = pattern.after_change(division);
   for (int k = 0; k < 3; ++k) EXPECT_EQ(after.remaining(CellId(k), 85), pattern.remaining(division.origin[k], 85));
 }
 

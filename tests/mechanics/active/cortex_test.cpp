@@ -244,9 +244,9 @@ TEST(Cortex, IsHandedOnToDaughters) {
     const double energy = before.energy(motion.step());
     const std::vector<CellCut> cuts = {{CellId(4), 0}, {CellId(7), 1}};
     const TissueChange division = divide(tissue, cuts, 0);
-    const auto after = before.after_division(tissue, division, tissue.rest_positions);
+    const auto after = before.after_change(tissue, division, tissue.rest_positions);
     Motion now = at_rest(tissue);
-    now.internal = before.internal_after_division(internal, tissue, division, {});
+    now.internal = before.internal_after_change(internal, tissue, division, {});
     const auto& faces = static_cast<const Cortex&>(*after).faces();
     ASSERT_EQ(now.internal.size(), 2 * faces.size());
     // Walls between daughters are new.

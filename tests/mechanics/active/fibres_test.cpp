@@ -218,7 +218,7 @@ TEST(Fibres, AreHandedOnToDaughters) {
   };
   const double energy = before->energy(turned(tissue).step());
   const TissueChange division = divide(tissue, std::vector<CellCut>{{CellId(4), 0}, {CellId(7), 1}}, 0);
-  const auto after = before->after_division(tissue, division, tissue.rest_positions);
+  const auto after = before->after_change(tissue, division, tissue.rest_positions);
   EXPECT_NEAR(after->energy(turned(tissue).step()), energy, 1e-12 * energy);
   const auto restored = after->restored(tissue, no_change(tissue), tissue.rest_positions, after->past());
   EXPECT_NEAR(restored->energy(turned(tissue).step()), energy, 1e-12 * energy);

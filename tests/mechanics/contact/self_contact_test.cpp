@@ -384,9 +384,9 @@ TEST(SelfContact, LivesOnThroughADivision) {
   const Vectors now = with_new_nodes(tissue, change, motion.positions);
   Motion after = at_rest(tissue);
   after.positions = after.previous_positions = now;
-  after.internal = law.internal_after_division(motion.internal, tissue, change, {motion.positions, now});
-  EXPECT_NEAR(push(*law.after_division(tissue, change, now), after) / before, 1, 0.03);
-  after.internal = law.internal_after_division(motion.internal, tissue, change, {});
+  after.internal = law.internal_after_change(motion.internal, tissue, change, {motion.positions, now});
+  EXPECT_NEAR(push(*law.after_change(tissue, change, now), after) / before, 1, 0.03);
+  after.internal = law.internal_after_change(motion.internal, tissue, change, {});
   EXPECT_TRUE(SelfContact::pairs_of(after.internal).empty());
 }
 

@@ -179,8 +179,8 @@ class Liar final : public Law {
   void add_tangent(const Step& step, TangentSink& tangent) const override {
     tangent.add_block(NodeId(step.positions.size() - 1), NodeId(std::size_t{0}), Mat3::Identity());
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const TissueChange&,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue&, const TissueChange&,
+                                                  std::span<const Vec3>) const override {
     return clone();
   }
 };

@@ -140,8 +140,8 @@ class Coupling final : public Law {
     groups.add(nodes_);
     return groups;
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const TissueChange&,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue&, const TissueChange&,
+                                                  std::span<const Vec3>) const override {
     return clone();
   }
 
@@ -163,7 +163,7 @@ class Floor final : public Obstacle {
   [[nodiscard]] std::unique_ptr<Obstacle> clone() const override { return std::make_unique<Floor>(*this); }
   [[nodiscard]] std::span<const NodeId> nodes() const override { return nodes_; }
   [[nodiscard]] Gap gap(const Vec3& x) const override { return {x.z() - height_, Vec3::UnitZ(), Mat3::Zero()}; }
-  [[nodiscard]] std::unique_ptr<Obstacle> after_division(const Tissue&, const TissueChange&) const override {
+  [[nodiscard]] std::unique_ptr<Obstacle> after_change(const Tissue&, const TissueChange&) const override {
     return clone();
   }
 

@@ -271,8 +271,8 @@ class MisjudgedSprings final : public Law {
     for (std::size_t n = 0; n < step.positions.size(); ++n)
       tangent.add_block(NodeId(n), NodeId(n), 1e-3 * stiffness * Mat3::Identity());
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const TissueChange&,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue&, const TissueChange&,
+                                                  std::span<const Vec3>) const override {
     return clone();
   }
 
@@ -403,8 +403,8 @@ class SoftTether final : public Law {
     for (std::size_t n = 0; n < homes_.size(); ++n)
       tangent.add_block(NodeId(n), NodeId(n), slope(step, n) * Vec3::UnitZ() * Vec3::UnitZ().transpose());
   }
-  [[nodiscard]] std::unique_ptr<Law> after_division(const Tissue&, const TissueChange&,
-                                                    std::span<const Vec3>) const override {
+  [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue&, const TissueChange&,
+                                                  std::span<const Vec3>) const override {
     return clone();
   }
 
