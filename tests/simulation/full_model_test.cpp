@@ -206,7 +206,8 @@ TEST(FullModel, AFurrowClosesAsItDoesWithoutPlanes) {
   EXPECT_EQ(*mirrored.measures()["contact_pairs"], *plain.measures()["contact_pairs"]);
 }
 
-// Where pairs are apart: those that overlap depend on what was known of them.
+// Where pairs are apart: those that overlap depend on what was known of them. And where they are not aslant: sections
+// of a slice are alike, so a place on one side of a section is as near as that on the other, and rounding decides.
 TEST(FullModel, PairsOfASideAndTheirImagesAreThoseOfTheWhole) {
   using Found = std::tuple<bool, std::set<std::size_t>, double, double>;
   for (const std::string& plane : planes) {
@@ -219,7 +220,7 @@ TEST(FullModel, PairsOfASideAndTheirImagesAreThoseOfTheWhole) {
     const auto apart = [](std::span<const ContactPair> pairs) {
       std::vector<Found> found;
       for (const ContactPair& pair : pairs) {
-        if (pair.first_gap < 0.1) continue;
+        if (pair.first_gap < 0.1 || std::abs(pair.normal.x()) > 0.1) continue;
         std::set<std::size_t> nodes;
         for (const NodeId node : pair.p.all_nodes()) nodes.insert(node.index());
         found.emplace_back(pair.is_of_edges(), nodes, pair.first_gap, pair.area);

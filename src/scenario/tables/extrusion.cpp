@@ -19,8 +19,8 @@ ScenarioTable extrusion_table() {
   const auto row = key_rows(info, &Scenario::extrusions);
   info.rows = {
       row("region", &X::region, anything, "Cells that may leave.", {.required = true}),
-      row("apical_area_below_um2", &X::apical_area_below_um2, positive, "Apical area below which a cell leaves and no longer divides (µm²).",
-          {.required = true}),
+      row("apical_area_below_um2", &X::apical_area_below_um2, positive,
+          "Apical area below which a cell leaves and no longer divides (µm²).", {.required = true}),
   };
   check_each(info, &Scenario::extrusions, check_extrusion);
   return info;
