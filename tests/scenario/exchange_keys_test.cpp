@@ -31,7 +31,7 @@ TEST(ExchangeKeys, SayWhatWouldBeRight) {
        "15: cortex.a.follow: activation by the shape of cells, whose reference changes, is not possible beside "
        "[exchange]; use a program, or remove [exchange]"},
       {exchanging + "[volume]\nmethod = \"none\"\n[time]\nscheme = \"linearly-implicit\"\nstep_s = 1",
-       "9: exchange: the paper's algorithm does not support exchange of neighbours; remove [exchange], or set "
+       "14: time.scheme: the paper's algorithm does not support exchange of neighbours; remove [exchange], or set "
        "time.scheme to \"newton\" and volume.method to \"coupled\" or \"none\""},
       {soft_sheet + "[extrusion.a]\nregion = \"all\"\napical_area_below_um2 = 5",
        "9: extrusion.a: cells lose neighbours only by exchange; set exchange.below_um, for example to 0.35"},

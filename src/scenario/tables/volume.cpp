@@ -12,10 +12,6 @@ void refuse_with_paper(const Scenario& scenario, Input& input) {
           key, fmt::format("the paper's algorithm does not support {}", what),
           fmt::format("{}, or set time.scheme to \"newton\" and volume.method to \"coupled\" or \"none\"", remedy));
   };
-  const auto refuse_each = [&](std::string_view stem, const auto& tables, std::string_view what) {
-    for (const auto& [name, table] : tables)
-      refuse(fmt::format("{}.{}", stem, name), what, fmt::format("remove [{}]", stem));
-  };
   if (!scenario.embryo.mirror.empty()) refuse("embryo.mirror", "mirror planes", "remove mirror");
   if (!scenario.embryo.periodic.empty()) refuse("embryo.periodic", "periodic sheets", "remove periodic");
   if (scenario.vitelline.drag_Pa_s_per_um > 0)
@@ -25,9 +21,12 @@ void refuse_with_paper(const Scenario& scenario, Input& input) {
       refuse("enclosed." + name + ".volume", "a held volume", "set volume to \"compliant\"");
   if (scenario.self_contact.surface != "none")
     refuse("self_contact.surface", "self-contact", "set surface to \"none\"");
-  refuse_each("division", scenario.divisions, "division");
-  if (scenario.exchange.below_um) refuse("exchange", "exchange of neighbours", "remove [exchange]");
-  refuse_each("growth", scenario.growths, "growth");
+  for (const auto& [name, growth] : scenario.growths) refuse("growth." + name, "growth", "remove [growth]");
+  // What changes the tissue is an aim, so the algorithm is named as what is wrong.
+  const std::string algorithm =
+      method_of(scenario.volume) == VolumeMethod::projection ? "volume.method" : "time.scheme";
+  if (!scenario.divisions.empty()) refuse(algorithm, "division", "remove [division]");
+  if (scenario.exchange.below_um) refuse(algorithm, "exchange of neighbours", "remove [exchange]");
 }
 
 void check_paper(const Scenario& scenario, Input& input) {
