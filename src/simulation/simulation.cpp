@@ -285,7 +285,7 @@ void Simulation::exchange() {
 // Follow a change of the model and the state.
 void Simulation::adopt(const TissueChange& change, const RepeatedChange& again) {
   now_.equilibrium_time_s.reset();             // it counts only after the last change
-  now_.pace = {.since_s = now_.state.time_s};  // steps about changes are short and hard, and yet the tissue goes on
+  now_.pace = {.since_s = now_.state.time_s};  // steps about changes are short and hard, but the tissue changes
   grown_.reset();
   now_.changes = std::make_shared<const ModelMemory>(
       memory_of(*model_, now_.changes ? inherited(change, now_.changes->origin) : change.origin));
