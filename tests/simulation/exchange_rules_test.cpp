@@ -1,4 +1,4 @@
-// Runs in which cells exchange neighbours and leave: resumption, threads, signals, cells that are told to leave.
+// Runs in which cells exchange neighbours and leave: resumption, threads, signals, cells that have to leave.
 #include "simulation/exchange_rules.hpp"
 
 #include "core/threads.hpp"
