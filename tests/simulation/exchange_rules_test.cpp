@@ -113,38 +113,8 @@ TEST(ExtrusionOfCells, TakeTheirSignalsWithThemAndNoMore) {
   EXPECT_GT(watch.lost, 0);
 }
 
-// Cells told to shrink to a twentieth in a sheet whose forces would leave them four or five walls.
 TEST(ExtrusionOfCells, EveryOneThatIsToldLeaves) {
-  Simulation simulation(scenario_of("format = 1\n" + sheet_table(21, 21, 8, 36) + R"(periodic = ["x", "y"]
-[elasticity]
-model = "neo-hookean"
-young_modulus_Pa = 100
-poisson_ratio = 0
-corner_barrier_Pa = 30
-relaxation_min = 1
-[exchange]
-below_um = 0.25
-[region.dying]
-ids = [3, 10, 24]
-[extrusion.dying]
-region = "dying"
-apical_area_below_um2 = 3
-[growth.dying]
-region = "dying"
-final_ratio = 0.05
-in_plane = 1
-program = { time_s = [0, 180], activity = [1, 1] }
-[cortex.lateral]
-region = "all"
-faces = "lateral"
-tension_mN_per_m = 0.1
-[time]
-end_min = 5
-tolerance_um = 0.2
-max_step_s = 6
-[stop]
-at_equilibrium = false
-)"));
+  Simulation simulation(scenario_of(sheet_that_cells_leave("5")));
   EXPECT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();
   EXPECT_EQ(simulation.state().exchanges.extruded, 3);
   EXPECT_LE(simulation.measures()["max_volume_error"].value_or(1), 1e-9);

@@ -307,36 +307,7 @@ TEST(Tape, GradientsThroughGrowthAndExchangeAgreeWithDifferences) {
 
 // Cells that have to leave turn their walls, whose new length follows from the old one, and leave.
 TEST(Tape, GradientsThroughExtrusionAgreeWithDifferences) {
-  expect_gradient({{"leaving", "leaving.toml", "format = 1\n" + sheet_table(21, 21, 8, 36) + R"(periodic = ["x", "y"]
-[elasticity]
-model = "neo-hookean"
-young_modulus_Pa = 100
-poisson_ratio = 0
-corner_barrier_Pa = 30
-relaxation_min = 1
-[exchange]
-below_um = 0.25
-[region.dying]
-ids = [3, 10, 24]
-[extrusion.dying]
-region = "dying"
-apical_area_below_um2 = 3
-[growth.dying]
-region = "dying"
-final_ratio = 0.05
-in_plane = 1
-program = { time_s = [0, 180], activity = [1, 1] }
-[cortex.lateral]
-region = "all"
-faces = "lateral"
-tension_mN_per_m = 0.1
-[time]
-end_min = 3.5
-tolerance_um = 0.2
-max_step_s = 6
-[stop]
-at_equilibrium = false
-)"},
+  expect_gradient({{"leaving", "leaving.toml", sheet_that_cells_leave("3.5")},
                    {},
                    {{"cortex.lateral.tension_mN_per_m", 0.1}, {"elasticity.young_modulus_Pa", 100}},
                    "",

@@ -70,6 +70,42 @@ inline std::string sheet_table(double length, double width, double height, int c
       width, height, cells);
 }
 
+/// Sheet of 36 cells, three of which shrink to a twentieth and leave, though its forces would leave them four or five
+/// walls.
+inline std::string sheet_that_cells_leave(const std::string& end_min) {
+  return "format = 1\n" + sheet_table(21, 21, 8, 36) + R"(periodic = ["x", "y"]
+[elasticity]
+model = "neo-hookean"
+young_modulus_Pa = 100
+poisson_ratio = 0
+corner_barrier_Pa = 30
+relaxation_min = 1
+[exchange]
+below_um = 0.25
+[region.dying]
+ids = [3, 10, 24]
+[extrusion.dying]
+region = "dying"
+apical_area_below_um2 = 3
+[growth.dying]
+region = "dying"
+final_ratio = 0.05
+in_plane = 1
+program = { time_s = [0, 180], activity = [1, 1] }
+[cortex.lateral]
+region = "all"
+faces = "lateral"
+tension_mN_per_m = 0.1
+[time]
+end_min = )" +
+         end_min + R"(
+tolerance_um = 0.2
+max_step_s = 6
+[stop]
+at_equilibrium = false
+)";
+}
+
 /// An egg of 300 cells.
 inline const std::string egg =
     "format = 1\n[embryo]\nshape = \"egg\"\nlength_um = 250\ndiameter_um = 120\ncell_count = 300\ncell_height_um = "
