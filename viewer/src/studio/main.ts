@@ -363,7 +363,6 @@ class Studio {
     this.wants.fill(true);
   }
 
-  // One request a slot and refresh of the screen, so that frames come no faster than they are drawn.
   private draw(): void {
     const begun = performance.now();
     this.views?.draw();
@@ -371,6 +370,8 @@ class Studio {
     this.framesAt = Math.max(this.framesAt, now + (now - begun) * (1 / picturesShare - 1));
   }
 
+  // One request a slot and refresh of the screen, so that frames come no faster than they are drawn; of a run under way,
+  // they leave most of the processor to the solver where drawing is slow.
   private askNow(): void {
     if (this.state.now.playing && performance.now() < this.framesAt) return;
     for (const slot of [0, 1]) {
