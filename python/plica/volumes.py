@@ -224,7 +224,7 @@ def _kept(layer: Layer, labels: Labels, keep: str) -> list[int]:
     cut = _cut_cells(labels)
     kept = [cell for cell in layer.rings if cell not in set(cut.tolist())]
     if len(cut):
-        labels.remarks.append(f"{len(cut)} cells are cut by the border of the image and were omitted; keep_cut = True keeps them")
+        labels.remarks.append(f"{_cells(cut.tolist(), labels)} are cut by the border of the image and were omitted; keep_cut = True keeps them")
     if not kept:
         raise ValueError(f"volume: no cell has three corners where three cells meet{_cut_text(labels)}")
     pieces = _pieces(layer, kept)
@@ -300,8 +300,8 @@ def _tell(tissue: LabelledTissue, layer: Layer, labels: Labels, volumes: Floats,
     pairs = one_sided_pairs(layer, kept)
     if pairs:
         named = ", ".join(" and ".join(str(labels.names[cell - 1]) for cell in pair) for pair in pairs[:3])
-        labels.remarks.append(f"{len(pairs)} pairs of cells touch on one side only (scutoids), {named}{', …' if len(pairs) > 3 else ''}: "
-                              "neighbours are those of the middle height")
+        labels.remarks.append(f"{len(pairs)} pairs of cells touch on one side only (scutoids), {named}{', …' if len(pairs) > 3 else ''}; the "
+                              f"first at {labels.where(labels.place_of(pairs[0][0]))}: neighbours are those of the middle height")
     for loop in _openings(layer, kept):
         place = layer.middle[loop].mean(axis=0) / layer.spacing
         labels.remarks.append(f"an opening of {len(loop)} edges in the layer, at {labels.where(np.round(place).astype(np.int64))}; "
