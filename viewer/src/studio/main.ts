@@ -23,7 +23,7 @@ import { ToolsBar } from "./tools_bar";
 
 const chartsApart = 700; // ms
 const chartsShare = 0.1; // of the time, at most, is spent on plots
-const picturesShare = 0.2; // of the time, at most, is spent on pictures of a run that goes on and is followed
+const picturesShare = 0.2; // of the time, at most, is spent on pictures of a run under way that is followed
 const mostCellsWithEdges = 5000;
 const mostShapes = 30; // kept, since each exchange of neighbours makes another; the server sends one again
 const movieLength = 8000; // ms
