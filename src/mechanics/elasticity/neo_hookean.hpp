@@ -36,6 +36,10 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8>, public LawDerivatives {
                           const BeginningGradient& gradient) const override;
   void add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
                              std::span<Vec3> positions, const BeginningGradient& gradient) const override;
+  /// Strengths are shear moduli.
+  void add_strength_gradient(const Step& step, std::span<const Vec3> adjoint,
+                             std::span<double> of_cells) const override;
+  [[nodiscard]] std::unique_ptr<Law> with_strengths(std::span<const double> factors) const override;
 
   /// Return, if cells relax, C_p at the beginning of this step, then of the previous step, in the layout of kernels.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
@@ -79,7 +83,8 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8>, public LawDerivatives {
                      const BeginningGradient& gradient) const;
 
   ElementValues<NeoHookeanMaterial> materials_;
-  bool flows_;  // whether any element relaxes
+  std::vector<double> strengths_;  // cells; factors on shear moduli; empty: 1
+  bool flows_;                     // whether any element relaxes
   std::vector<CellId> element_cell_;
   std::vector<HexPoints> rest_;  // elements; um
   std::vector<NeoHookeanBatch> batches_;
