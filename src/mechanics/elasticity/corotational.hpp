@@ -38,6 +38,9 @@ class Corotational final : public BatchLaw<Corotational, 8>, public LawDerivativ
     if (shear_viscosity_ > 0) add_viscous_gradient(*this, step, adjoint, gradient);
   }
 
+  /// Add the integral of its Cauchy stress over each cell, nN um, without viscosity.
+  void add_stress_integrals(const Tissue& tissue, const Step& step, std::span<Mat3> of_cells) const;
+
   [[nodiscard]] CorotationalArrays kernel_arrays(const Step& step) const;
 
  private:
