@@ -8,27 +8,53 @@
 namespace plica {
 
 Foundation::Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule rule)
-    : Foundation(tissue, std::move(pattern), std::move(rule), tissue.rest_positions) {}
+    : rule_(std::move(rule)), pattern_(std::move(pattern)), anchors_(tissue.rest_positions) {
+  measure(tissue);
+  support(tissue);
+}
 
-Foundation::Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule rule, Vectors anchors)
-    : rule_(std::move(rule)), pattern_(std::move(pattern)), anchors_(std::move(anchors)) {
-  std::vector<double> areas(tissue.node_count(), 0);
-  Vectors area_vectors(tissue.node_count(), Vec3::Zero());
+// Areas of faces, and normals of nodes, of the faces as anchored.
+void Foundation::measure(const Tissue& tissue) {
+  areas_.clear();
+  normals_.assign(tissue.node_count(), Vec3::Zero());
   for (const Facet& facet : tissue.facets(rule_.side)) {
     const std::array<Vec3, 4> corners = gather(anchors_, facet);
-    for (const NodeId node : facet.nodes) {  // the images of a periodic sheet move as their originals
-      const std::size_t n = tissue.original(node).index();
-      areas[n] += pattern_.strengths[facet.cell.index()] * facet_area(corners) / 4;
-      area_vectors[n] += facet_area_vector(corners);
-    }
+    areas_.push_back(facet_area(corners));
+    // The images of a periodic sheet move as their originals.
+    for (const NodeId node : facet.nodes) normals_[tissue.original(node).index()] += facet_area_vector(corners);
   }
-  for (std::size_t n = 0; n < areas.size(); ++n) {
-    if (areas[n] == 0) continue;
+  for (std::size_t n = 0; n < normals_.size(); ++n) {
     // On a mirror plane, the faces beyond it cancel what their sum has across it.
     for (int axis = 0; axis < 3; ++axis)
-      if (tissue.is_mirrored[axis] && anchors_[n][axis] == 0) area_vectors[n][axis] = 0;
-    supports_.push_back({n, areas[n], area_vectors[n].normalized()});
+      if (tissue.is_mirrored[axis] && anchors_[n][axis] == 0) normals_[n][axis] = 0;
+    normals_[n].normalize();
   }
+}
+
+// Faces of a cell, or of all its daughters, keep its area, shared by present areas.
+void Foundation::share_areas(const Tissue& tissue, const TissueChange& change, std::span<const Vec3> positions) {
+  const std::vector<Facet>& facets = tissue.facets(rule_.side);
+  const auto origin = [&](const Facet& facet) { return change.origin[facet.cell.index()].index(); };
+  areas_.clear();
+  std::vector<double> wholes(cell_areas_.size(), 0);
+  for (const Facet& facet : facets) wholes[origin(facet)] += areas_.emplace_back(facet_area(gather(positions, facet)));
+  for (std::size_t f = 0; f < facets.size(); ++f)
+    areas_[f] *= cell_areas_[origin(facets[f])] / wholes[origin(facets[f])];
+}
+
+void Foundation::support(const Tissue& tissue) {
+  const std::vector<Facet>& facets = tissue.facets(rule_.side);
+  cell_areas_.assign(tissue.cells.size(), 0);
+  std::vector<double> areas(tissue.node_count(), 0);
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    const std::size_t cell = facets[f].cell.index();
+    cell_areas_[cell] += areas_[f];
+    for (const NodeId node : facets[f].nodes)
+      areas[tissue.original(node).index()] += pattern_.strengths[cell] * areas_[f] / 4;
+  }
+  supports_.clear();
+  for (std::size_t n = 0; n < areas.size(); ++n)
+    if (areas[n] != 0) supports_.push_back({n, areas[n], normals_[n]});
 }
 
 Vec3 Foundation::displacement(const Support& support, const Step& step) const {
@@ -116,25 +142,56 @@ double Foundation::rounding(const Step& step, double position_rounding) const {
 }
 
 std::unique_ptr<Law> Foundation::after_change(const Tissue& tissue, const TissueChange& change,
-                                              std::span<const Vec3> /*positions*/) const {
-  Vectors anchors = with_new_nodes(tissue, change, anchors_);
-  tissue.place_hanging_positions(anchors);
-  return std::unique_ptr<Law>(new Foundation(tissue, pattern_.after_change(change), rule_, std::move(anchors)));
+                                              std::span<const Vec3> positions) const {
+  auto after = std::make_unique<Foundation>(*this);
+  after->pattern_ = pattern_.after_change(change);
+  after->anchors_ = with_new_nodes(tissue, change, anchors_);
+  tissue.place_hanging_positions(after->anchors_);
+  after->is_remeshed_ = is_remeshed_ || !change.remeshed.empty();
+  if (after->is_remeshed_) {
+    after->normals_ = with_new_nodes(tissue, change, normals_);
+    for (Vec3& normal : after->normals_) normal.normalize();
+    after->share_areas(tissue, change, positions);
+  } else {
+    after->measure(tissue);
+  }
+  after->support(tissue);
+  return after;
 }
 
 std::vector<double> Foundation::past() const {
   std::vector<double> past;
-  for (const Vec3& anchor : anchors_) past.insert(past.end(), {anchor.x(), anchor.y(), anchor.z()});
+  const auto append = [&](const Vectors& vectors) {
+    for (const Vec3& vector : vectors) past.insert(past.end(), {vector.x(), vector.y(), vector.z()});
+  };
+  append(anchors_);
+  if (!is_remeshed_) return past;
+  append(normals_);
+  past.insert(past.end(), areas_.begin(), areas_.end());
   return past;
 }
 
 std::unique_ptr<Law> Foundation::restored(const Tissue& tissue, const TissueChange& change,
                                           std::span<const Vec3> /*positions*/, std::span<const double> past) const {
-  if (past.size() != 3 * tissue.node_count()) throw InvalidNumbers();
-  Vectors anchors;
-  for (std::size_t n = 0; n < tissue.node_count(); ++n)
-    anchors.emplace_back(past[3 * n], past[3 * n + 1], past[3 * n + 2]);
-  return std::unique_ptr<Law>(new Foundation(tissue, pattern_.after_change(change), rule_, std::move(anchors)));
+  const std::size_t numbers = 3 * tissue.node_count(), faces = tissue.facets(rule_.side).size();
+  if (past.size() != numbers && past.size() != 2 * numbers + faces) throw InvalidNumbers();
+  const auto vectors_from = [&](std::size_t first) {
+    Vectors vectors;
+    for (std::size_t i = first; i < first + numbers; i += 3) vectors.emplace_back(past[i], past[i + 1], past[i + 2]);
+    return vectors;
+  };
+  auto law = std::make_unique<Foundation>(*this);
+  law->pattern_ = pattern_.after_change(change);
+  law->anchors_ = vectors_from(0);
+  law->is_remeshed_ = past.size() > numbers;
+  if (law->is_remeshed_) {
+    law->normals_ = vectors_from(numbers);
+    law->areas_.assign(past.begin() + static_cast<std::ptrdiff_t>(2 * numbers), past.end());
+  } else {
+    law->measure(tissue);
+  }
+  law->support(tissue);
+  return law;
 }
 
 }  // namespace plica

@@ -24,7 +24,8 @@ struct FoundationRule {
 };
 
 /// Foundation law. Cell strengths scale stiffness and drag. It owns its anchors: after a change of the tissue, new
-/// nodes are anchored at the mean of those that they lie between.
+/// nodes are anchored at the mean of those that they lie between. Once cells have been remeshed, anchors of a face tell
+/// neither its area nor its normal: cells keep the area of their faces, nodes their normal.
 class Foundation final : public Law, public LawDerivatives {
  public:
   Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule rule);
@@ -40,7 +41,7 @@ class Foundation final : public Law, public LawDerivatives {
 
   [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
                                                   std::span<const Vec3> positions) const override;
-  /// Anchors of all nodes.
+  /// Anchors of all nodes; once cells have been remeshed, also their normals, and areas of all faces of the side.
   [[nodiscard]] std::vector<double> past() const override;
   [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const TissueChange& change,
                                               std::span<const Vec3> positions,
@@ -59,7 +60,9 @@ class Foundation final : public Law, public LawDerivatives {
     double area = 0;  // um^2, times strengths
     Vec3 normal;      // out of the tissue
   };
-  Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule rule, Vectors anchors);
+  void measure(const Tissue& tissue);
+  void share_areas(const Tissue& tissue, const TissueChange& change, std::span<const Vec3> positions);
+  void support(const Tissue& tissue);
   [[nodiscard]] bool is_pressed(const Support& support, const Step& step) const;
   [[nodiscard]] double spring(const Support& support, double time_s) const {
     return support.area * rule_.stiffness * rule_.program.at(time_s);
@@ -74,7 +77,11 @@ class Foundation final : public Law, public LawDerivatives {
 
   FoundationRule rule_;
   CellPattern pattern_;
-  Vectors anchors_;  // nodes; um
+  Vectors anchors_;            // nodes; um
+  Vectors normals_;            // nodes of the side; out of the tissue
+  std::vector<double> areas_;  // faces of the side; um^2
+  ByCell<double> cell_areas_;  // their sums
+  bool is_remeshed_ = false;
   std::vector<Support> supports_;
 };
 

@@ -3,10 +3,13 @@
 #include "mechanics/foundation.hpp"
 
 #include "core/threads.hpp"
+#include "mechanics/exchange.hpp"
 #include "support/divided.hpp"
 #include "support/law_checks.hpp"
+#include "support/prisms.hpp"
 #include "support/resumed.hpp"
 #include "support/scenarios.hpp"
+#include "support/turns.hpp"
 
 namespace {
 
@@ -89,6 +92,56 @@ TEST(Foundation, ADivisionChangesNoForceOnASheetThatMovesAsOne) {
   EXPECT_EQ(forces_of(*again, motion.step()), forces_of(*model.laws[0], motion.step()));
   EXPECT_THROW((void)model.laws[0]->restored(model.tissue, no_change(model.tissue), {}, std::vector<double>(3)),
                InvalidNumbers);
+}
+
+// Cells keep areas and normals of their faces while they change neighbours, though the anchors of a face are far apart
+// then; a cell that leaves takes its area with it.
+TEST(Foundation, ExchangesAndAnExtrusionLeaveAreasAndNormals) {
+  constexpr std::size_t leaving = 24;
+  Model model(tissue_from_prisms(honeycomb(7, 7, 3.5, 10), PolygonSplit::diagonals, 1));
+  CellSet held(49, false);
+  for (std::size_t c = 0; c < held.size(); c += 2) held[c] = true;
+  model.laws.push_back(std::make_unique<Foundation>(model.tissue, held, basal_springs(Resists::normal)));
+  State state = rest_state(model);
+  const auto forces = [&] {
+    Motion motion = at_rest(model.tissue);
+    motion.positions = state.positions;
+    for (Vec3& x : motion.positions) x.z() -= 2;
+    motion.previous_positions = motion.positions;
+    return forces_of(*model.laws[0], motion.step());
+  };
+  const auto turn = [&](std::vector<WallTurn> turns) {
+    const Vectors before = state.positions;
+    const TissueChange change = turned(model.tissue, turns, 1, state.positions);
+    state.velocities = with_new_nodes(model.tissue, change, state.velocities);
+    follow_change(model, state, change, before);
+    return turns.size();
+  };
+  const double whole = resultant(forces()).z();
+  const auto expect_unchanged = [&](double part) {
+    EXPECT_LE((resultant(forces()) - Vec3(0, 0, part * whole)).norm(), 1e-9 * whole);
+  };
+  Random random(3);
+  std::size_t turns = 0;
+  for (int round = 0; round < 20; ++round) {
+    turns += turn(random_turns(model.tissue, 8, random));
+    smooth(model.tissue, state.positions);
+    expect_unchanged(1);
+  }
+  EXPECT_GT(turns, 60U);
+  while (model.tissue.cells[leaving].sides() > 3) {
+    std::vector<WallTurn> possible = possible_turns(model.tissue.sheet);
+    std::erase_if(possible,
+                  [](const WallTurn& one) { return one.left != CellId(leaving) && one.right != CellId(leaving); });
+    ASSERT_FALSE(possible.empty());
+    ASSERT_EQ(turn({possible.front()}), 1U);
+  }
+  ASSERT_TRUE(extrude_cells(model, state, {CellId(leaving)}));
+  expect_unchanged(24.0 / 25);
+  const std::unique_ptr<Law> again = model.laws[0]->restored(model.tissue, no_change(model.tissue),
+                                                             model.tissue.rest_positions, model.laws[0]->past());
+  const Motion motion = random_motion(model.tissue, 3, 6);
+  EXPECT_EQ(forces_of(*again, motion.step()), forces_of(*model.laws[0], motion.step()));
 }
 
 const std::string pressed = block_table(60, 40, 20, "3, 2, 1") + R"([elasticity]

@@ -191,6 +191,25 @@ TEST(Pace, ARunThatCrushesItsCellsEnds) {
   EXPECT_EQ(resumed.state().positions, run.state().positions);
 }
 
+// Steps about changes of the tissue are short and hard, but the tissue changes: the pace counts from the last one.
+TEST(Pace, CountsFromTheLastChangeOfTheTissue) {
+  Simulation run(scenario_of("format = 1\n" + exchanging_sheet + "[division.all]\nregion = \"all\"\nat_s = 4\n"));
+  int changed = 0, unchanged = 0;
+  for (int events = 0; run.step();) {
+    const RunMemory memory = run.memory();
+    const int now = memory.state.exchanges.count + memory.divisions;
+    const bool has_changed = now != std::exchange(events, now);
+    ++(has_changed ? changed : unchanged);
+    EXPECT_EQ(memory.pace.steps == 0, has_changed);
+    EXPECT_EQ(memory.pace.iterations == 0, has_changed);
+    EXPECT_EQ(memory.pace.since_s == memory.state.time_s, has_changed);
+  }
+  EXPECT_EQ(run.status(), RunStatus::end_time) << run.failure();
+  EXPECT_GT(run.divisions(), 0);
+  EXPECT_GT(changed, 2);
+  EXPECT_GT(unchanged, 2);
+}
+
 class PaceRule : public testing::Test {
  protected:
   PaceRule() { at.time_s = 3, flatten(0.005); }

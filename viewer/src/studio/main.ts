@@ -23,6 +23,7 @@ import { ToolsBar } from "./tools_bar";
 
 const chartsApart = 700; // ms
 const chartsShare = 0.1; // of the time, at most, is spent on plots
+const picturesShare = 0.2; // of the time, at most, is spent on pictures of a run under way that is followed
 const mostCellsWithEdges = 5000;
 const mostShapes = 30; // kept, since each exchange of neighbours makes another; the server sends one again
 const movieLength = 8000; // ms
@@ -44,6 +45,7 @@ class Studio {
   private readonly shapes = new Map<string, LiveTopology>();
   private readonly wants = [false, false]; // slots to be asked for at the next refresh
   private readonly frameShown = [-1, -1]; // index of the frame shown in each slot
+  private framesAt = 0; // of a followed run, not before, ms
   private isRecording = false; // a movie, whose pictures are not drawn on the page, too
   private frameCount = 0; // of the run in the first slot
   private isShown: (() => void) | null = null; // called when every slot shows the frame it waits for
@@ -113,8 +115,8 @@ class Studio {
     this.state.on(["field"], () => this.fieldChanged());
     const tick = (now: number) => {
       this.time.tick(now);
+      if (!this.isRecording) this.draw();
       this.askNow();
-      if (!this.isRecording) this.views?.draw();
       if (now > this.chartsAt) this.updateCharts();
       requestAnimationFrame(tick);
     };
@@ -361,8 +363,17 @@ class Studio {
     this.wants.fill(true);
   }
 
-  // One request a slot and refresh of the screen, so that frames come no faster than they are drawn.
+  private draw(): void {
+    const begun = performance.now();
+    this.views?.draw();
+    const now = performance.now();
+    this.framesAt = Math.max(this.framesAt, now + (now - begun) * (1 / picturesShare - 1));
+  }
+
+  // One request a slot and refresh of the screen, so that frames come no faster than they are drawn; of a run under way,
+  // they leave most of the processor to the solver where drawing is slow.
   private askNow(): void {
+    if (this.state.now.playing && performance.now() < this.framesAt) return;
     for (const slot of [0, 1]) {
       const run = this.wanted(slot);
       if (!this.wants[slot] || run === null) continue;
