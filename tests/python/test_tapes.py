@@ -255,6 +255,7 @@ def test_bad_arguments_are_told(tape, arguments, message):
 
 REFUSED = [
     ({"cortex.apical.trigger": {"measure": "apical_area_ratio", "below": 0.9}}, "cortex.apical: a jump at a time given by a trigger"),
+    ({"cortex.apical.follow": {"measure": "stress_Pa", "from": 0, "to": 9}}, "cortex.apical: activity by stress has no"),
     ({"signal.u": {"initial": 0.1}, "cortex.apical.trigger": {"signal": "u", "above": 0.5}}, "cortex.apical: a trigger by a signal has no"),
     ({"dynamics.density_kg_per_m3": 1000, "time.integrator": "backward-euler"}, "inertia: this law has no derivatives yet"),
     ({"time.scheme": "linearly-implicit", "volume.method": "projection"}, "only Newton's steps"),

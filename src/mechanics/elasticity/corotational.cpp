@@ -136,6 +136,27 @@ std::unique_ptr<Law> Corotational::with_strengths(std::span<const double> factor
   return law;
 }
 
+// The integral over an element is -sum_i f_i x_i^T with the forces on its nodes when it is apart from all others.
+void Corotational::add_stress_integrals(const Tissue& tissue, const Step& step, std::span<Mat3> of_cells) const {
+  std::vector<CorotationalBatch> batches = batches_;
+  for (std::size_t place = 0; place < places(); ++place)
+    for (std::size_t i = 0; i < 8; ++i)
+      batches[place / batch_size].nodes[i][place % batch_size] =
+          static_cast<int>(3 * (8 * std::min(place, elements_.size() - 1) + i));
+  Vectors positions, forces(8 * elements_.size(), Vec3::Zero());
+  for (const Nodes& nodes : elements_)
+    for (const NodeId node : nodes) positions.push_back(step.positions[node.index()]);
+  CorotationalArrays apart = kernel_arrays(step);
+  apart.batches = batches.data();
+  apart.viscous_batches = nullptr;
+  apart.positions = components(std::span<const Vec3>(positions));
+  chunks_.for_batches([&](std::size_t first, std::size_t last) {
+    kernels().add_forces(apart, first, last, components(std::span<Vec3>(forces)));
+  });
+  for (std::size_t k = 0; k < forces.size(); ++k)
+    of_cells[tissue.element_cell[k / 8].index()] -= forces[k] * positions[k].transpose();
+}
+
 std::unique_ptr<Law> Corotational::after_change(const Tissue& tissue, const TissueChange& change,
                                                 std::span<const Vec3>) const {
   std::vector<ElasticModuli> moduli = moduli_.after_change(tissue, change);

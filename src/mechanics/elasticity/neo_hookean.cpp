@@ -278,19 +278,31 @@ std::unique_ptr<Law> NeoHookean::after_change(const Tissue& tissue, const Tissue
 
 std::optional<Mat3> NeoHookean::elastic_stretch(std::span<const double> internal, std::span<const Vec3> positions,
                                                 std::span<const ElementId> elements) const {
-  Mat3 sum = Mat3::Zero();
-  double weights = 0;
-  for (const ElementId id : elements) {
-    const std::size_t e = id.index();
-    const HexPoints points = gather(positions, elements_[e]);
-    for (int g = 0; g < 8; ++g) {
-      const double weight = batches_[e / batch_size].weights[g][e % batch_size];
-      const Mat3 F = deformation_gradient(points, rest_[e], g);
-      sum += weight * F * (flows_ ? flowed(internal, id, g).inverse() : Mat3(Mat3::Identity())) * F.transpose();
-      weights += weight;
-    }
+  Stretches all;
+  for (const ElementId id : elements) add_stretches(internal, positions, id, all);
+  return Mat3(all.sum / all.weights);
+}
+
+void NeoHookean::add_stretches(std::span<const double> internal, std::span<const Vec3> positions, ElementId element,
+                               Stretches& stretches) const {
+  const std::size_t e = element.index();
+  const HexPoints points = gather(positions, elements_[e]);
+  for (int g = 0; g < 8; ++g) {
+    const double weight = batches_[e / batch_size].weights[g][e % batch_size];
+    const Mat3 F = deformation_gradient(points, rest_[e], g);
+    stretches.sum +=
+        weight * F * (flows_ ? flowed(internal, element, g).inverse() : Mat3(Mat3::Identity())) * F.transpose();
+    stretches.weights += weight;
   }
-  return Mat3(sum / weights);
+}
+
+// The Kirchhoff stress is mu (F C_p^-1 F^T - I).
+void NeoHookean::add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const {
+  std::vector<Stretches> of_elements(elements_.size());
+  chunks_.for_elements(
+      [&](std::size_t e) { add_stretches(step.internal, step.positions, ElementId(e), of_elements[e]); });
+  for (std::size_t e = 0; e < elements_.size(); ++e)
+    of_cells[element_cell_[e].index()] += of_elements[e].sum - of_elements[e].weights * Mat3::Identity();
 }
 
 std::vector<double> NeoHookean::internal_after_change(std::span<const double> internal, const Tissue& tissue,

@@ -56,6 +56,9 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8>, public LawDerivatives {
   [[nodiscard]] std::optional<Mat3> elastic_stretch(std::span<const double> internal, std::span<const Vec3> positions,
                                                     std::span<const ElementId> elements) const override;
 
+  /// Add the integral of its Cauchy stress over each cell, nN um.
+  void add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const;
+
   /// Return C_p of a Gauss point in an internal state.
   [[nodiscard]] Mat3 flowed(std::span<const double> internal, ElementId element, int gauss_point) const;
 
@@ -69,6 +72,13 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8>, public LawDerivatives {
     std::span<const FlowedBatch> now, earlier;
   };
   [[nodiscard]] Memory memory(std::span<const double> internal) const;
+  // Sums over Gauss points of elements: weights, and weights times the left Cauchy-Green tensor of the elastic strain.
+  struct Stretches {
+    double weights = 0;
+    Mat3 sum = Mat3::Zero();
+  };
+  void add_stretches(std::span<const double> internal, std::span<const Vec3> positions, ElementId element,
+                     Stretches& stretches) const;
   [[nodiscard]] Mat3 flowed_before(std::size_t element, int gauss_point, const Step& step) const;
   [[nodiscard]] NeoHookeanArrays kernel_arrays(const Step& step) const;
   // A Gauss point at the end of a step: F, the inverse of dx/d(reference) at rest, C_b + r C and r. `place`: the

@@ -35,6 +35,25 @@ void check_effect(const std::string& table, const CortexInput& cortex, Input& in
         "stiffness_mN_per_m");
 }
 
+// Checks that the stress of cells is known, if they read it.
+bool check_stress(const std::string& part, const ActivationInput& activation, const Scenario& scenario, Input& input) {
+  if (activation.measure != "stress_Pa") return true;
+  if (model_of(scenario.elasticity) == ElasticModel::shape_memory) {
+    if (input.sound("elasticity.model"))
+      input.report(part + ".measure", "model \"shape-memory\" has no stress",
+                   "set elasticity.model to \"corotational\", or measure to \"apical_stretch\"");
+    return false;
+  }
+  for (const auto& [name, cortex] : scenario.cortices)
+    if (cortex.faces != "lateral" && !cortex.direction.axis.empty() &&
+        (cortex.stiffness_mN_per_m > 0 || cortex.crowding_mN_per_m > 0)) {
+      input.report(part + ".measure", fmt::format("stress_Pa has no passive fibres, such as cortex.{}", name),
+                   fmt::format("put stiffness and crowding of cortex.{} into a table without direction", name));
+      return false;
+    }
+  return true;
+}
+
 // Checks what a cell reads; false: nothing, or an error.
 bool check_activation(const std::string& part, const ActivationInput& activation, bool has_bounds,
                       const Scenario& scenario, Input& input) {
@@ -47,9 +66,10 @@ bool check_activation(const std::string& part, const ActivationInput& activation
   if (!activation.is_used() && (has_bounds || is_of_neighbours))
     return report(
         ".measure", "is missing",
-        fmt::format("set measure to one of: {}; or set signal", fmt::join(words_of(words::shape_measures), " | ")));
+        fmt::format("set measure to one of: {}; or set signal", fmt::join(words_of(words::cell_measures), " | ")));
   if (!activation.measure.empty() && !activation.signal.empty())
     return report(".signal", "conflicts with `measure`, which is also set", "remove one of them");
+  if (!check_stress(part, activation, scenario, input)) return false;
   if (activation.signal.empty() || scenario.signals.contains(activation.signal)) return activation.is_used();
   const std::string problem = fmt::format("no signal \"{}\"", activation.signal);
   if (scenario.signals.empty()) return report(".signal", problem, fmt::format("add [signal.{}]", activation.signal));
@@ -169,10 +189,10 @@ void take_fibres(const DirectionInput& input, const Tissue& tissue, CortexRule& 
 ShapeActivationRule make_shape_activation(const CortexInput& input, const Scenario& scenario) {
   ShapeActivationRule rule;
   const auto read = [&](const ActivationInput& activation) {
-    rule.measure = meaning_of(words::shape_measures, activation.measure, rule.measure);
+    rule.measure = meaning_of(words::cell_measures, activation.measure, rule.measure);
     rule.of_neighbours = meaning_of(words::read_cells, activation.of);
     const auto signal = scenario.signals.find(activation.signal);
-    if (signal != scenario.signals.end())
+    if (signal != scenario.signals.end() || rule.measure == ShapeMeasure::passive_stress)
       rule.signal = static_cast<std::size_t>(std::distance(scenario.signals.begin(), signal));
   };
   if (input.trigger.is_used()) {
@@ -186,6 +206,8 @@ ShapeActivationRule make_shape_activation(const CortexInput& input, const Scenar
     rule.to = *input.follow.to;
     read(input.follow);
   }
+  if (rule.measure == ShapeMeasure::passive_stress)
+    for (double* value : {&rule.threshold, &rule.from, &rule.to}) *value *= units::pascal;
   return rule;
 }
 
@@ -260,7 +282,7 @@ ScenarioTable cortex_table() {
   info.rows.insert(
       info.rows.end(),
       {
-          row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::shape_measures),
+          row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::cell_measures),
               "Measure that starts the time courses."),
           row("trigger.signal", &X::trigger, &TriggerInput::signal, anything,
               "Instead of `measure`: name of a `[signal.NAME]`."),
@@ -268,7 +290,7 @@ ScenarioTable cortex_table() {
               "Whose: its own, or the mean of cells that share a lateral face with it."),
           row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
           row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
-          row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::shape_measures),
+          row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::cell_measures),
               "Measure that scales the active tension."),
           row("follow.signal", &X::follow, &FollowInput::signal, anything,
               "Instead of `measure`: name of a `[signal.NAME]`."),
