@@ -1,5 +1,5 @@
-"""Commands of the Python package: ``python -m plica labels FILE --out cells.vtp``, and ``calibrate``, which the program ``plica``
-hands over. Others are those of the program."""
+"""Commands that the program ``plica`` hands over to the Python package: ``labels``, and ``calibrate`` by gradients. ``python -m plica``
+runs them without the program."""
 from __future__ import annotations
 
 import argparse
@@ -16,12 +16,12 @@ DONE, USAGE, GAVE_UP, FILES = 0, 2, 3, 4  # exit statuses, as those of the progr
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m plica", description="Commands of plica's Python package.")
+    parser = argparse.ArgumentParser(prog="plica", description="Commands of plica's Python package.")
     commands = parser.add_subparsers(dest="command", required=True)
     labels = commands.add_parser(
         "labels", help="cells as prisms, from a volume of labels",
         description="Make cells of a volume of labels, for embryo.shape = \"prisms\".",
-        epilog="example: python -m plica labels cyst.tif --spacing-um 1 0.3 0.3 --apical inside --out cells.vtp --picture cells.png")
+        epilog="example: plica labels cyst.tif --spacing-um 1 0.3 0.3 --apical inside --out cells.vtp --picture cells.png")
     labels.add_argument("file", help="TIFF, OME-TIFF, NumPy or Zarr: planes, rows, columns")
     labels.add_argument("--out", required=True, help="file to write, .vtp or .ply")
     labels.add_argument("--spacing-um", nargs=3, type=float, metavar=("PLANES", "ROWS", "COLUMNS"),
@@ -39,7 +39,7 @@ def _parser() -> argparse.ArgumentParser:
 
 def main(words: Optional[Sequence[str]] = None) -> int:
     """Run a command and return its exit status."""
-    given = _parser().parse_args(words)
+    given = _parser().parse_args(_with_directions(sys.argv[1:] if words is None else words))
     try:
         return calibrate_command.calibrate(given) if given.command == "calibrate" else _labels(given)
     except NumericsError as error:
@@ -50,6 +50,17 @@ def main(words: Optional[Sequence[str]] = None) -> int:
         return _refused(error, FILES)
     except ValueError as error:
         return _refused(error, USAGE)
+
+
+def _with_directions(words: Sequence[str]) -> list[str]:
+    """Return words in which ``--apical -z`` is ``--apical=-z``, because argparse takes -z for an option."""
+    joined: list[str] = []
+    for word in words:
+        if joined and joined[-1] == "--apical" and not word.startswith("--"):
+            joined[-1] += f"={word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def _refused(error: Exception, status: int) -> int:

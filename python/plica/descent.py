@@ -41,13 +41,14 @@ def descend(problem: Problem, begin: End, until: Optional[float], most_runs: int
     if residuals is None:
         raise NumericsError(problem.run(place, until)["reason"])
     radius, slopes = FIRST_RADIUS, problem.slopes(place, until)
+    failed = False  # the last step
     while True:
         step = bounded_step(slopes, residuals, problem.low - place, problem.high - place, radius)
         gain = score - float(((residuals + slopes @ step) ** 2).sum())
         length = float(np.linalg.norm(step))
         if gain < tolerance and length < 0.99 * radius:
             return End(place, score, runs, "converged")
-        if radius < LEAST_RADIUS:
+        if (failed and gain < tolerance) or radius < LEAST_RADIUS:
             return End(place, score, runs, "no better place nearby")
         if runs >= most_runs:
             return End(place, score, runs, "runs spent")
@@ -58,13 +59,14 @@ def descend(problem: Problem, begin: End, until: Optional[float], most_runs: int
             radius = 0.25 * min(length, radius)
         elif part > 0.75 and length > 0.9 * radius:
             radius *= 2
+        failed = True
         if found is not None and after < score:
             try:
                 slopes = problem.slopes(there, until)
             except NumericsError:
                 radius = min(0.25 * length, radius)
                 continue
-            place, residuals, score = there, found, after
+            place, residuals, score, failed = there, found, after, False
 
 
 def bounded_step(slopes: Array, residuals: Array, low: Array, high: Array, radius: float) -> Array:

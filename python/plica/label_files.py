@@ -19,7 +19,8 @@ UNITS_UM = {"µm": 1.0, "um": 1.0, "micron": 1.0, "microns": 1.0, "micrometer": 
 def read_labels(path: Union[str, os.PathLike[str]]) -> tuple[NDArray[Any], Spacing]:
     """Return the array in a file, and its spacing in µm (planes, rows, columns), if the file has it.
 
-    Endings: ``.tif``, ``.tiff`` (also of ImageJ and OME), ``.npy``, ``.npz``, ``.zarr`` (also of OME, its finest level).
+    Endings: ``.tif``, ``.tiff`` (also of ImageJ and OME), ``.npy``, ``.npz``, ``.zarr`` (also of OME, its finest level, and arrays or groups
+    inside).
 
     Raises
     ------
@@ -28,12 +29,13 @@ def read_labels(path: Union[str, os.PathLike[str]]) -> tuple[NDArray[Any], Spaci
     """
     file = Path(path_of(path, "volume"))
     readers = {".tif": _tiff, ".tiff": _tiff, ".npy": _numpy, ".npz": _numpy, ".zarr": _zarr}
-    if file.suffix.lower() not in readers:
+    ending = ".zarr" if any(part.lower().endswith(".zarr") for part in file.parts) else file.suffix.lower()
+    if ending not in readers:
         raise FileError(f"{file}: is no volume of labels; give {', '.join(readers)}")
     if not file.exists():
         raise FileError(f"{file}: cannot be read: there is no such file")
     try:
-        return readers[file.suffix.lower()](file)
+        return readers[ending](file)
     except PlicaError:
         raise
     except Exception as error:

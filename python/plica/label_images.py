@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, Optional
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .arguments import told
 from .errors import needed
 
 BODY_RADIUS_PX = 2  # of the largest disc in the smallest region that counts as a cell; lines and specks are thinner
@@ -41,6 +42,8 @@ def _flat(image: ArrayLike) -> tuple[NDArray[Any], str]:
         raise ValueError(f"image: {len(masked)} pixels are masked, the first at {tuple(map(int, masked[0]))}; "
                          "image.filled(0) makes them background")
     labels, call = np.asarray(image), "image"
+    if labels.dtype.kind in "SUO":
+        raise ValueError(f"image: {told(image)}; give an array, by skimage.io.imread(\"labels.tif\") for instance")
     if labels.ndim > 2 and min(labels.shape) == 1:
         labels, call = np.squeeze(labels), "numpy.squeeze(image)"
     if labels.ndim == 3 and labels.shape[2] in (3, 4):

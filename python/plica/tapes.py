@@ -3,8 +3,9 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Optional, Union
 
@@ -24,6 +25,8 @@ Loss = Callable[[Array], tuple[float, ArrayLike]]
 KEY_CHANGE = 1e-4  # of a key on each side, relative
 CHECK_CHANGES = (1e-4, 1e-5, 1e-6, 1e-7)  # tried by check_gradient
 GOOD = 1e-6  # relative agreement that needs no further change
+FINER = 4  # division of time.tolerance_um by which check_gradient compares
+COARSE = 0.05  # relative difference from there at which it warns
 
 
 def record(
@@ -82,7 +85,7 @@ def record(
     factors = _factors(own, {} if strengths is None else strengths)
     laws = laws_of(energies)
     core = _core.Tape.record(own._ready, whole(threads, "threads", 1, 1024), times_s, until_s, factors, laws)
-    return Tape(own, core, factors, dict(energies or {}))
+    return Tape(own, core, factors, dict(energies or {}), threads)
 
 
 class Tape:
@@ -92,8 +95,9 @@ class Tape:
     or exchange neighbours, and which do. Positions at such a time are those after the change.
     """
 
-    def __init__(self, scenario: Scenario, core: _core.Tape, strengths: dict[str, list[float]], energies: dict[str, LocalEnergy]) -> None:
-        self._scenario, self._core, self._strengths, self._energies = scenario, core, strengths, energies
+    def __init__(self, scenario: Scenario, core: _core.Tape, strengths: dict[str, list[float]], energies: dict[str, LocalEnergy],
+                 threads: int) -> None:
+        self._scenario, self._core, self._strengths, self._energies, self._threads = scenario, core, strengths, energies, threads
         self._parameters: dict[str, _core.Parameter] = {}
 
     @property
@@ -330,7 +334,7 @@ class Tape:
 
     def _replayed(self, scenario: Scenario, strengths: dict[str, list[float]], energies: dict[str, LocalEnergy]) -> Tape:
         """Return a changed run through the same steps."""
-        return Tape(scenario, self._core.replayed(scenario._ready, strengths, laws_of(energies)), strengths, energies)
+        return Tape(scenario, self._core.replayed(scenario._ready, strengths, laws_of(energies)), strengths, energies, self._threads)
 
     def _with_strengths(self, factors: Mapping[str, ArrayLike]) -> Tape:
         """Return the run with other factors through the same steps."""
@@ -364,6 +368,9 @@ class GradientCheck:
         strongly curved or jumps, and no derivative can be checked.
     error : float
         Relative difference of derivative and difference.
+    finer : float
+        The derivative of a run with a quarter of ``time.tolerance_um``; NaN if steps are given, or cells divide or exchange
+        neighbours.
     """
 
     of: str
@@ -371,6 +378,7 @@ class GradientCheck:
     difference: float
     change: float
     uncertainty: float
+    finer: float = math.nan
 
     @property
     def error(self) -> float:
@@ -379,7 +387,7 @@ class GradientCheck:
     def __repr__(self) -> str:
         doubt = "" if math.isnan(self.uncertainty) else f" ± {self.uncertainty:.1e}"
         return (f"GradientCheck({self.of}: {self.gradient:.9g}, difference {self.difference:.9g} by changes of {self.change:.0e}, "
-                f"error {self.error:.1e}{doubt})")
+                f"error {self.error:.1e}{doubt}" + ("" if math.isnan(self.finer) else f", by finer steps {self.finer:.4g}") + ")")
 
 
 def check_gradient(
@@ -391,7 +399,7 @@ def check_gradient(
     at_min: Union[None, float, Iterable[float]] = None,
     change: Optional[float] = None,
 ) -> list[GradientCheck]:
-    """Compare a gradient with central differences of runs through the same steps.
+    """Compare a gradient with central differences of runs through the same steps, and with that of a run in finer steps.
 
     Parameters
     ----------
@@ -416,9 +424,23 @@ def check_gradient(
     RuntimeError
         If a step of a changed run does not converge.
 
+    Warns
+    -----
+    UserWarning
+        If the derivative of a run with a quarter of ``time.tolerance_um`` differs by more than 5 %: an outcome may be accurate where
+        its slope is not.
+
     Notes
     -----
-    It takes two to eight runs per comparison and one more, with tight tolerances.
+    It takes two to eight runs per comparison and one more, with tight tolerances, and one in finer steps.
+
+    Examples
+    --------
+    >>> import plica
+    >>> tape = plica.record("drosophila", until_min=0.5)
+    >>> [check] = plica.check_gradient(tape, "furrow_depth_um", of="contraction.apical.stiffness_nN_per_um")
+    >>> check.error < 1e-6, abs(check.finer / check.gradient - 1) < 0.05
+    (True, True)
     """
     changes = CHECK_CHANGES if change is None else (number_from(change, 0, "change", "a number above 0", above=True),)
     base = tape._replayed(tape._scenario, tape._strengths, tape._energies)
@@ -433,7 +455,8 @@ def check_gradient(
         def by_key(key: str, part: float) -> float:
             return value(tape._strengths, *base._changed(key, part))
 
-        return [_checked(key, float(slope), changes, partial(by_key, key), base._value(key)) for key, slope in zip(keys, slopes)]
+        checks = [_checked(key, float(slope), changes, partial(by_key, key), base._value(key)) for key, slope in zip(keys, slopes)]
+        return _compared_with_finer(tape, checks, list(np.eye(len(keys))), outcome, of, by, at_min)
     law = text_of(of, "of")
     at = np.array(tape._strengths.get(law, np.ones(len(slopes))))
     largest = int(np.argmax(np.abs(slopes)))
@@ -442,8 +465,30 @@ def check_gradient(
     def along(direction: Array, part: float) -> float:
         return value({**tape._strengths, law: (at + part * direction).tolist()}, tape._scenario, tape._energies)
 
-    return [_checked(f"{law}, {name}", float(direction @ slopes), changes, partial(along, direction), 1.0)
-            for name, direction in directions.items()]
+    checks = [_checked(f"{law}, {name}", float(direction @ slopes), changes, partial(along, direction), 1.0)
+              for name, direction in directions.items()]
+    return _compared_with_finer(tape, checks, list(directions.values()), outcome, of, by, at_min)
+
+
+def _compared_with_finer(tape: Tape, checks: list[GradientCheck], directions: list[Array], outcome: Any, of: Any, by: Optional[str],
+                         at_min: Union[None, float, Iterable[float]]) -> list[GradientCheck]:
+    """Add derivatives along directions of a run in finer steps. Warns if one differs."""
+    scenario = tape.scenario
+    tolerance_um = float(scenario["time.tolerance_um"])
+    if scenario["time.step_s"] != "adaptive" or tape._core.changes > 0:
+        return checks
+    scenario["time.tolerance_um"] = tolerance_um / FINER
+    finer = record(scenario, until_min=tape.times_min[-1], at_min=() if at_min is None else at_min, strengths=tape._strengths,
+                   energies=tape._energies, threads=tape._threads)
+    slopes = np.atleast_1d(finer.gradient(outcome, of=of, by=by, at_min=at_min))
+    found = [replace(check, finer=float(direction @ slopes)) for check, direction in zip(checks, directions)]
+    coarse = [check for check in found if abs(check.finer - check.gradient) > COARSE * abs(check.finer)]
+    if coarse:
+        worst = max(coarse, key=lambda check: abs(check.finer - check.gradient) / max(abs(check.finer), np.finfo(float).tiny))
+        warnings.warn(f"check_gradient: time.tolerance_um = {tolerance_um:g} is too coarse for slopes: that by {worst.of} is "
+                      f"{worst.gradient:.4g}, and {worst.finer:.4g} at {tolerance_um / FINER:g}; set time.tolerance_um to "
+                      f"{tolerance_um / FINER:g} or less, record and check again", stacklevel=3)
+    return found
 
 
 def _checked(of: str, slope: float, changes: Iterable[float], value_at: Callable[[float], float], unit: float) -> GradientCheck:

@@ -224,7 +224,7 @@ def _kept(layer: Layer, labels: Labels, keep: str) -> list[int]:
     cut = _cut_cells(labels)
     kept = [cell for cell in layer.rings if cell not in set(cut.tolist())]
     if len(cut):
-        labels.remarks.append(f"{len(cut)} cells are cut by the border of the image and were omitted; keep_cut = True keeps them")
+        labels.remarks.append(f"cut by the border of the image, and omitted: {_cells(cut.tolist(), labels)}; keep_cut = True keeps them")
     if not kept:
         raise ValueError(f"volume: no cell has three corners where three cells meet{_cut_text(labels)}")
     pieces = _pieces(layer, kept)
@@ -235,8 +235,8 @@ def _kept(layer: Layer, labels: Labels, keep: str) -> list[int]:
                          "keep = \"largest\" omits all but the first, or raise gap_px")
     flawed = sorted({*layer.flawed} & {*pieces[0]})
     if flawed:
-        raise ValueError(f"volume: {_cells(flawed, labels)} are no prisms between their neighbours, which surround them or lie inside them; "
-                         "correct these labels, or make them background")
+        raise ValueError("volume: no prisms between their neighbours, which surround them or lie inside them: "
+                         f"{_cells(flawed, labels)}; correct these labels, or make them background")
     return sorted(pieces[0])
 
 
@@ -287,21 +287,22 @@ def _tell(tissue: LabelledTissue, layer: Layer, labels: Labels, volumes: Floats,
     cut = set(_cut_cells(labels).tolist())
     without = [cell for cell in range(1, labels.cells + 1) if volumes[cell] > 0 and cell not in layer.rings and cell not in cut]
     if without:
-        labels.remarks.append(f"{_cells(without, labels)} do not reach the middle height with three corners, and were omitted")
+        labels.remarks.append(f"without three corners at the middle height, and omitted: {_cells(without, labels)}")
     large = [cell for cell, is_large in zip(kept, large_cells(volumes[kept])) if is_large]
     if large:
-        labels.remarks.append(f"{_cells(large, labels)} have more than {LARGE_CELL:g} times the volume of a usual cell: two cells may have one label")
+        labels.remarks.append(f"more than {LARGE_CELL:g} times the volume of a usual cell, so two cells may have one label: "
+                              f"{_cells(large, labels)}")
     lopsided = [cell for cell in kept if not layer.sides.spans[cell] and not any(RIM in layer.cells[column] for column in layer.rings[cell])]
     if lopsided:
-        labels.remarks.append(f"{_cells(lopsided, labels)} do not reach both sides; their corners there follow their neighbours'")
+        labels.remarks.append(f"on one side only, so that corners on the other follow the neighbours': {_cells(lopsided, labels)}")
     moved = sorted({*layer.evened} & {*kept})
     if moved:
-        labels.remarks.append(f"{_cells(moved, labels)} had flat or turned corners, which were evened out")
+        labels.remarks.append(f"flat or turned corners were evened out in {_cells(moved, labels)}")
     pairs = one_sided_pairs(layer, kept)
     if pairs:
         named = ", ".join(" and ".join(str(labels.names[cell - 1]) for cell in pair) for pair in pairs[:3])
-        labels.remarks.append(f"{len(pairs)} pairs of cells touch on one side only (scutoids), {named}{', …' if len(pairs) > 3 else ''}: "
-                              "neighbours are those of the middle height")
+        labels.remarks.append(f"{len(pairs)} pairs of cells touch on one side only (scutoids), {named}{', …' if len(pairs) > 3 else ''}; the "
+                              f"first at {labels.where(labels.place_of(pairs[0][0]))}: neighbours are those of the middle height")
     for loop in _openings(layer, kept):
         place = layer.middle[loop].mean(axis=0) / layer.spacing
         labels.remarks.append(f"an opening of {len(loop)} edges in the layer, at {labels.where(np.round(place).astype(np.int64))}; "
@@ -318,7 +319,7 @@ def large_cells(volumes: Floats) -> NDArray[np.bool_]:
 def _cells(cells: list[int], labels: Labels) -> str:
     """Name cells and the place of the first."""
     named = ", ".join(str(labels.names[cell - 1]) for cell in cells[:5])
-    return (f"{len(cells)} cells ({named}{', …' if len(cells) > 5 else ''}; the first at {labels.where(labels.place_of(cells[0]))})")
+    return (f"{len(cells)} cell{'s' if len(cells) > 1 else ''} ({named}{', …' if len(cells) > 5 else ''}; the first at {labels.where(labels.place_of(cells[0]))})")
 
 
 def one_sided_pairs(layer: Layer, kept: list[int]) -> list[tuple[int, int]]:

@@ -125,7 +125,7 @@ def _tell(labels: Labels, goes: NDArray[np.bool_], hole: NDArray[np.bool_], of: 
             continue
         most = int(pieces[np.argmax(size[pieces])])
         name = f" of cell {labels.names[of[most] - 1]}" if of[most] else ""
-        labels.remarks.append(f"{len(pieces)} small {one if len(pieces) == 1 else several} given to their surroundings (largest:"
+        labels.remarks.append(f"{len(pieces)} small {one if len(pieces) == 1 else several} given to the surroundings (largest:"
                               f"{name} {size[most]} voxels at {labels.where(_at(begin[most], shape))})")
 
 

@@ -23,7 +23,7 @@ enum ExitStatus : int {
 using AddCommand = void(CLI::App& app, int& status);
 AddCommand add_run_command, add_compare_command, add_calibrate_command, add_study_command, add_reproduce_command,
     add_report_command, add_render_command, add_export_command, add_check_command, add_mesh_command,
-    add_scenarios_command, add_reference_command, add_studio_command;
+    add_scenarios_command, add_reference_command, add_studio_command, add_labels_command;
 
 // Ctrl-C and SIGTERM, for commands that stop in good order.
 inline volatile std::sig_atomic_t caught_signal = 0;

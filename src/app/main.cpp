@@ -73,7 +73,7 @@ int main(int argc, char** argv) {
   for (AddCommand* add :
        {add_run_command, add_compare_command, add_calibrate_command, add_study_command, add_reproduce_command,
         add_report_command, add_render_command, add_export_command, add_check_command, add_mesh_command,
-        add_scenarios_command, add_reference_command, add_studio_command})
+        add_scenarios_command, add_reference_command, add_studio_command, add_labels_command})
     add(app, status);
   try {
     app.parse(argc, argv);

@@ -12,7 +12,7 @@ from support import BLOCK, SPHERE, CommandLine, plica, running
 class Usage(CommandLine):
     def test_help_of_every_command_has_an_example(self):
         top = self.call("--help")
-        for command in ("run", "check", "mesh", "scenarios", "compare"):
+        for command in ("run", "check", "mesh", "scenarios", "compare", "labels"):
             with self.subTest(command):
                 self.assertIn(command, top.stdout)
                 self.assertRegex(self.call(command, "--help").stdout, rf"Example.*plica {command}")

@@ -2,11 +2,12 @@
 import importlib
 import warnings
 
+import napari
 import npe2
 import numpy as np
 import pytest
 from drawn_tissues import Tube
-from napari_plica.layers import FIELDS, solid
+from napari_plica.layers import FIELDS, cells_layer, solid
 from napari_plica.widget import FoldWidget
 
 SPACING = (1.0, 0.5, 0.5)
@@ -83,6 +84,19 @@ def test_laws_of_a_file(opened, tmp_path):
     simulation = widget.simulation()
     assert simulation.cell_data["picked"].sum() == 1 and np.isfinite(simulation.activity("cortex.apical")).sum() == 1
     assert simulation.scenario["time.end_s"] == pytest.approx(600)
+
+
+def test_tensions_as_colours(opened):
+    viewer, widget, _ = opened
+    widget.volume.reset_choices()
+    widget.side.value = "outside"
+    widget.make_cells()
+    tensions = np.linspace(0.5, 2, len(widget.tissue.cells))
+    data, look, kind = cells_layer(widget.tissue, tensions, "tensions")
+    viewer.add_layer(napari.layers.Layer.create(data, look, kind))
+    assert set(viewer.layers["tensions"].data[2]) == set(tensions)
+    with pytest.raises(ValueError, match=r"values: shape \(3,\); give one number per cell"):
+        cells_layer(widget.tissue, tensions[:3])
 
 
 def test_solid_is_closed():

@@ -87,6 +87,7 @@ def test_lines_between_labels_are_shared_out():
 @pytest.mark.parametrize(("image", "um", "said"), [
     (np.zeros((4, 5, 6), int), 1, r"a stack of planes; only flat label images of shape \(rows, columns\)"),
     (np.zeros((4, 4), complex), 1, "whole numbers of shape"),
+    ("labels.tif", 1, "image: 'labels.tif'; give an array, by skimage.io.imread"),
     (np.zeros((0, 4), int), 1, "whole numbers of shape"),
     (np.zeros((9, 9), int), 1, "no cell has three corners"),
     (np.full((4, 4), 0.5), 1, r"0.5 at \(0, 0\); give whole numbers"),

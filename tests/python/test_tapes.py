@@ -1,4 +1,6 @@
 """Recorded runs: gradients agree with differences, and recover what made a shape."""
+import warnings
+
 import numpy as np
 import plica
 import pytest
@@ -85,6 +87,27 @@ def test_a_check_finds_the_change_that_an_outcome_allows(slope, value_at, change
     assert 0.5 * error < check.error <= error or error < 1e-5 and check.error <= error
     assert np.isnan(uncertainty) and np.isnan(check.uncertainty) or 0.4 * uncertainty < check.uncertainty <= uncertainty
     assert f"{check.change:.0e}" in repr(check) and ("±" in repr(check)) != np.isnan(uncertainty)
+
+
+def test_a_check_warns_of_a_tolerance_too_coarse_for_slopes():
+    scenario = plica.Scenario("furrow-slice")
+    scenario.update({"embryo.mirror": ["y"], "time.tolerance_um": 0.1})
+    tape = plica.record(scenario)
+    key = "cortex.apical.tension_mN_per_m"
+    with pytest.warns(UserWarning, match=f"time.tolerance_um = 0.1 is too coarse for slopes: that by {key} is -12.*set time.tolerance_um to 0.025"):
+        [check] = plica.check_gradient(tape, "furrow_depth_um", of=key, change=1e-5)
+    scenario["time.tolerance_um"] = 0.025
+    finer = plica.record(scenario)
+    assert check.finer == pytest.approx(finer.gradient("furrow_depth_um", of=key), rel=1e-6)
+    # As coarse, before contact: no warning. Given steps have no tolerance.
+    block = plica.Scenario(BLOCK)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        [check] = plica.check_gradient(plica.record(block), "top.area_um2", of=key)
+        assert check.finer == pytest.approx(check.gradient, rel=0.05)
+        block["time.step_s"] = 5
+        [check] = plica.check_gradient(plica.record(block), "top.area_um2", of=key)
+        assert np.isnan(check.finer)
 
 
 def test_a_function_of_several_times(tape):

@@ -1,9 +1,11 @@
 """Cells as prisms of volumes of labels. damaged_volumes.py makes many more damages."""
 import functools
+import os
 import re
 import subprocess
 import sys
 import warnings
+from pathlib import Path
 
 import damaged_volumes
 import numpy as np
@@ -80,16 +82,16 @@ def test_cells_have_their_numbers():
 
 
 @pytest.mark.parametrize(("damage", "kind", "spacing", "said"), [
-    ("noise", "cyst", HALF, "small pieces given to their surroundings"),
-    ("holes", "egg", HALF, "holes? given to their surroundings"),
+    ("noise", "cyst", HALF, "small pieces given to the surroundings"),
+    ("holes", "egg", HALF, "holes? given to the surroundings"),
     ("gaps", "tube", HALF, "gaps between cells were closed"),
     ("merged", "cyst", HALF, "two cells may have one label"),
     ("split", "sheet", HALF, None),
     ("missing", "cyst", HALF, "an opening of . edges in the layer, at plane"),
-    ("cut", "sheet", HALF, "cut by the border of the image and were omitted"),
+    ("cut", "sheet", HALF, "cut by the border of the image, and omitted: .* cells .*; the first at plane"),
     ("lower", "cyst", HALF, None),
     ("rough_walls", "cyst", damaged_volumes.FLAT, None),
-    ("missing", "sheet", damaged_volumes.FLAT, "flat or turned corners, which were evened out"),
+    ("missing", "sheet", damaged_volumes.FLAT, "flat or turned corners were evened out in"),
 ])
 def test_damage_is_repaired_and_reported(damage, kind, spacing, said):
     labels, _, drawing = drawn(kind, spacing)
@@ -228,6 +230,11 @@ def test_zarr(tmp_path):
     group.attrs["multiscales"] = [{"axes": axes, "datasets": [{"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [0.5, 0.2, 0.2]}]}]}]
     found, spacing = read_labels(tmp_path / "b.zarr")
     assert np.array_equal(found, labels) and spacing == pytest.approx((0.5, 0.2, 0.2))
+    several = zarr.open_group(str(tmp_path / "c.zarr"), mode="w")
+    several["nuclei"], several["cells"] = labels + 1, labels
+    with pytest.raises(plica.FileError, match="give the path of one array"):
+        read_labels(tmp_path / "c.zarr")
+    assert np.array_equal(read_labels(tmp_path / "c.zarr/cells")[0], labels)
 
 
 def test_command(tmp_path):
@@ -241,3 +248,16 @@ def test_command(tmp_path):
     assert "cells.vtp: 80 cells\nneighbours right: " in done.stdout
     again = subprocess.run([*words, "--apical", "inside"], capture_output=True, text=True)
     assert again.returncode == 4 and "exists; set --overwrite" in again.stderr
+    down = subprocess.run([*words, "--apical", "-z", "--overwrite"], capture_output=True, text=True)
+    assert 'apical: "-z", but no side of the layer faces there' in down.stderr
+
+
+@pytest.mark.skipif("PLICA" not in os.environ, reason="PLICA names the program")
+def test_the_program_hands_over(tmp_path):
+    np.save(tmp_path / "labels.npy", drawn("tube")[0])
+    path = {"PATH": f"{Path(sys.executable).parent}:{os.environ['PATH']}"}
+    words = [os.environ["PLICA"], "labels", str(tmp_path / "labels.npy"), "--spacing-um", "0.5", "0.5", "0.5", "--apical", "inside"]
+    done = subprocess.run([*words, "--out", str(tmp_path / "cells.ply")], env={**os.environ, **path}, capture_output=True, text=True)
+    assert done.returncode == 0 and "cells.ply: 80 cells" in done.stdout, done.stderr
+    refused = subprocess.run(words, env={**os.environ, **path}, capture_output=True, text=True)
+    assert refused.returncode == 2 and "--out" in refused.stderr

@@ -36,11 +36,14 @@ def solid(apical: Floats, basal: Floats, rings: Sequence[NDArray[Any]]) -> Solid
     return Solid(np.concatenate(vertices)[:, ::-1], np.concatenate(triangles), np.concatenate(cell))
 
 
-def cells_layer(tissue: Any, name: str = "cells") -> tuple[Any, dict[str, Any], str]:
-    """Return the surface layer of the cells of a `plica.LabelledTissue`, coloured by height."""
+def cells_layer(tissue: Any, values: Any = None, name: str = "cells") -> tuple[Any, dict[str, Any], str]:
+    """Return the surface layer of the cells of a `plica.LabelledTissue`, coloured by a number per cell, such as inferred tensions; by
+    default by height."""
     body = solid(tissue.apical, tissue.basal, tissue.cells)
-    heights = np.asarray(tissue.heights)
-    return ((body.vertices, body.triangles, heights[body.cell]),
+    shown = np.asarray(tissue.heights if values is None else values, dtype=float)
+    if shown.shape != (len(tissue.cells),):
+        raise ValueError(f"values: shape {shown.shape}; give one number per cell, of shape ({len(tissue.cells)},)")
+    return ((body.vertices, body.triangles, shown[body.cell]),
             {"name": name, "colormap": "viridis", "opacity": 0.7, "metadata": {"remarks": list(tissue.remarks)}}, "surface")
 
 

@@ -100,6 +100,10 @@ PolygonFile read_by_ending(const std::filesystem::path& path) {
   if (ending == ".ply") return polygons_in_ply(read_file(path));
   if (ending == ".vtp" || ending == ".vtk" || ending == ".vtu") return read_vtk_polygons(path);
   if (ending == ".h5" || ending == ".hdf5" || ending == ".hf5") return read_vertex_model(path);
+  if (ending == ".tif" || ending == ".tiff" || ending == ".npy" || ending == ".npz" || ending == ".zarr")
+    throw MeshError(
+        "is an image; make cells of its labels: of a volume by `plica labels FILE --out cells.vtp`, of a flat image by "
+        "plica.polygons_of_labels in Python");
   throw MeshError(
       "\"{}\" is not the extension of a polygon file; readable are .obj, .off, .ply, .vtp, .vtk, .vtu, and .h5, .hdf5 "
       "and .hf5 by tyssue: save the polygons as PLY or OBJ, in MeshLab or ParaView for example",

@@ -201,6 +201,9 @@ TEST_F(TissueFiles, AreReadByTheirEnding) {
   write_file(folder / "a.stl", "solid\n");
   expect_mesh_error([&] { read_polygon_file(folder / "a.stl"); },
                     "a.stl: \".stl\" is not the extension of a polygon file");
+  write_file(folder / "a.TIF", "II");
+  expect_mesh_error([&] { read_polygon_file(folder / "a.TIF"); },
+                    "a.TIF: is an image; make cells of its labels: of a volume by `plica labels FILE");
   write_file(folder / "b.ply",
              "ply\nformat ascii 1.0\nelement vertex 3\nproperty int x\nproperty int y\nproperty int z\nelement face "
              "2\nproperty list int int vertex_indices\nproperty float a\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 "

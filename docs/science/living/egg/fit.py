@@ -1,10 +1,11 @@
 """Fit a hypothesis of hypotheses.toml to its targets by slopes, and print its misfit and evidence.
 
-Usage: fit.py HYPOTHESIS FOLDER [--runs 8] [--start FITTED]. It starts from egg.toml and `set`, or from the fit in FITTED. FOLDER keeps all
-runs: the same command continues after an interruption.
+Usage: fit.py HYPOTHESIS FOLDER [--runs 8]. It starts from the row of the hypothesis in starts.csv. FOLDER keeps all runs: the same command
+continues after an interruption, or with more runs.
 Writes keys.csv and targets.csv (Fit.write), and evidence.json. Needs egg.obj (mesh.py).
 """
 import argparse
+import csv
 import json
 import math
 import tomllib
@@ -14,10 +15,13 @@ from pathlib import Path
 import numpy as np
 
 import plica
+from plica.descent import bounded_step
 from plica.fit_problem import Scale
 
 HERE = Path(__file__).resolve().parent
 PLAN = tomllib.loads((HERE / "hypotheses.toml").read_text())
+TOLERANCE = 0.5  # of a fit: misfit and prior's misfit that a step must promise
+KINK = 2  # what may be promised beyond a kink
 
 
 def scenario_of(name):
@@ -119,13 +123,27 @@ def experiments(scenario):
 def evidence(fit, bounds):
     """Laplace's approximation of the logarithm of the evidence, and what it is made of."""
     scales = [Scale.of(*ends) for ends in bounds.values()]
-    away = np.array([(scale.to(fit.values[key]) - 0.5 * (scale.low + scale.high)) / scale.spread for key, scale in zip(bounds, scales)])
-    slopes = fit.jacobian * [scale.spread for scale in scales]
+    place, low, high, spread = (np.array(one) for one in zip(
+        *[(scale.to(fit.values[key]), scale.low, scale.high, scale.spread) for key, scale in zip(bounds, scales)]))
+    away = (place - 0.5 * (low + high)) / spread
+    slopes = fit.jacobian * spread
+    promised = promise(fit, away, slopes, (low - place) / spread, (high - place) / spread)
     narrowed = np.linalg.slogdet(np.eye(len(scales)) + slopes.T @ slopes)[1]
     known = np.linalg.eigvalsh(slopes.T @ slopes)
     return {"misfit": fit.score, "prior": float(away @ away), "log_det": float(narrowed), "keys": len(bounds),
             "keys_used": float((known / (1 + known)).sum()), "log_evidence": -0.5 * (fit.score + float(away @ away) + float(narrowed)),
+            "promised": promised, "converged": fit.end == "converged" or (fit.end == "no better place nearby" and promised < KINK),
             "runs": fit.runs, "end": fit.end}
+
+
+def promise(fit, away, slopes, low, high):
+    """Decrease of misfit and prior's misfit that a Gauss-Newton step within the bounds promises, by slopes at the end of the fit.
+
+    Places are in standard deviations of the prior: `away` from its centre, `low` and `high` from the end of the fit."""
+    residuals = np.concatenate([[one.deviations for one in fit.misses], away])
+    rows = np.concatenate([slopes, np.eye(len(away))])
+    step = bounded_step(rows, residuals, low, high, 1e3)
+    return float(residuals @ residuals - ((residuals + rows @ step) ** 2).sum())
 
 
 if __name__ == "__main__":
@@ -133,15 +151,14 @@ if __name__ == "__main__":
     parser.add_argument("hypothesis", choices=list(PLAN["hypothesis"]))
     parser.add_argument("folder", type=Path)
     parser.add_argument("--runs", type=int, default=8)
-    parser.add_argument("--start", type=Path)
     options = parser.parse_args()
     scenario, bounds = scenario_of(options.hypothesis)
-    if options.start:
-        known = json.loads((options.start / "evidence.json").read_text())["values"]
-        scenario.update({key: value for key, value in known.items() if key in bounds})
+    with (HERE / "starts.csv").open() as file:
+        start = next(row for row in csv.DictReader(file) if row["hypothesis"] == options.hypothesis)
+    scenario.update({key: float(start[key]) for key in bounds})
     warnings.simplefilter("ignore")
     fit = plica.fit(experiments(scenario), of=bounds, priors={key: prior(*ends) for key, ends in bounds.items()}, runs=options.runs,
-                    tolerance=0.1, folder=options.folder, progress=True)
+                    tolerance=TOLERANCE, folder=options.folder, progress=True)
     found = {"hypothesis": options.hypothesis, **evidence(fit, bounds), "values": fit.values,
              "targets": [[one.scenario, str(one.outcome), one.at_min, one.value, one.sd, one.found] for one in fit.misses]}
     (options.folder / "evidence.json").write_text(json.dumps(found, indent=1) + "\n")
