@@ -11,6 +11,7 @@
 #include "measure/cross_section.hpp"
 #include "measure/energy_norm.hpp"
 #include "measure/region_shape.hpp"
+#include "mechanics/cell_stress.hpp"
 #include "mechanics/energy.hpp"
 #include "tissue/mirror.hpp"
 
@@ -207,6 +208,12 @@ std::vector<double> pressures(const Monitor& monitor, const Moment& moment) {
   return at_cells(monitor, moment, in_Pa);
 }
 
+std::vector<double> stresses(const Monitor& monitor, const Moment& moment) {
+  std::vector<double> in_Pa = passive_stresses(moment.model, moment.state);
+  for (double& stress : in_Pa) stress /= units::pascal;
+  return at_cells(monitor, moment, in_Pa);
+}
+
 std::vector<double> simulated_time(const Monitor&, const Moment& moment) { return {moment.state.time_s}; }
 
 std::vector<double> computing_time(const Monitor&, const Moment& moment) { return {moment.wall_s}; }
@@ -215,7 +222,7 @@ using Of = Quantity::Of;
 using Reference = Quantity::Reference;
 constexpr auto may = Quantity::Axis::may_have, must = Quantity::Axis::must_have, no_axis = Quantity::Axis::none;
 
-constexpr std::array<Quantity, 20> table = {{
+constexpr std::array<Quantity, 21> table = {{
     {"position", "um", Of::node, positions, "Coordinate along `axis`.", must},
     {"displacement", "um", Of::node, displacements, "Displacement from the reference state: norm, or component.", may},
     {"speed", "um_per_s", Of::node, velocities,
@@ -242,6 +249,8 @@ constexpr std::array<Quantity, 20> table = {{
     {"apical_elongation", "", Of::side, elongations,
      "Length of the apical surface along x / width across, of the rectangle with its second moments. None at a pole."},
     {"pressure", "Pa", Of::cell, pressures, "Cell pressure; positive in compression."},
+    {"stress", "Pa", Of::cell, stresses,
+     "Passive tension in the plane of the sheet, as `stress_Pa` of `[cortex.NAME]`."},
     {"apical_load", "Pa", Of::side, apical_loads,
      "Inward component of the driving force (as `force`) per apical area around a node, mean over the cell's apical "
      "corners."},

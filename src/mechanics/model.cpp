@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/errors.hpp"
+#include "mechanics/cell_stress.hpp"
 
 namespace plica {
 
@@ -83,19 +84,23 @@ std::vector<std::vector<double>> next_internals(const Model& model, const Step& 
 
 std::optional<SignalFailure> advance_signals(const Model& model, const State& before, State& after) {
   after.signals = before.signals;
-  if (model.signals.empty()) return std::nullopt;
-  const std::vector<double> volumes_before = model.volumes.volumes(before.positions),
-                            volumes = model.volumes.volumes(after.positions);
-  auto failure = model.signals.advance(model.tissue, {volumes_before, volumes, after.positions},
-                                       after.time_s - before.time_s, after.signals);
-  if (!failure) follow_signals(model, after);
-  return failure;
+  if (!model.signals.empty()) {
+    const std::vector<double> volumes_before = model.volumes.volumes(before.positions),
+                              volumes = model.volumes.volumes(after.positions);
+    if (auto failure = model.signals.advance(model.tissue, {volumes_before, volumes, after.positions},
+                                             after.time_s - before.time_s, after.signals))
+      return failure;
+  }
+  follow_signals(model, after);
+  return std::nullopt;
 }
 
 void follow_signals(const Model& model, State& state) {
-  if (model.signals.empty()) return;
+  Signals::Values signals = state.signals;
+  if (reads_stress(model)) signals.push_back(passive_stresses(model, state));
+  if (signals.empty()) return;
   for (std::size_t l = 0; l < model.laws.size(); ++l)
-    state.internals[l] = model.laws[l]->with_signals(state.internals[l], state.signals, state.time_s);
+    state.internals[l] = model.laws[l]->with_signals(state.internals[l], signals, state.time_s);
 }
 
 State rest_state(const Model& model) {

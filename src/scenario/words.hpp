@@ -123,11 +123,12 @@ inline constexpr auto delay_starts = std::to_array<Word<StartDelay::From>>({{"mi
                                                                             {"high", StartDelay::From::high}});
 
 // [cortex.NAME], in addition to those above.
-inline constexpr auto shape_measures =
+inline constexpr auto cell_measures =
     std::to_array<Word<ShapeMeasure>>({{shape_measure_names[0], ShapeMeasure::apical_area_ratio},
                                        {shape_measure_names[1], ShapeMeasure::basal_area_ratio},
                                        {shape_measure_names[2], ShapeMeasure::height_ratio},
-                                       {shape_measure_names[3], ShapeMeasure::apical_stretch}});
+                                       {shape_measure_names[3], ShapeMeasure::apical_stretch},
+                                       {"stress_Pa", ShapeMeasure::passive_stress}});
 inline constexpr auto fibre_axes = std::to_array<Word<FibreAxis>>({{"along", FibreAxis::along},
                                                                    {"across", FibreAxis::across},
                                                                    {"long-axis", FibreAxis::long_axis},

@@ -79,7 +79,7 @@ State FullModel::follow(const Model& side, const State& state) {
     auto implied = side.laws[l]->internal_of_whole(state.internals[l]);
     next.internals.push_back(implied ? std::move(*implied) : law.next_internal(law_step));
   });
-  follow_signals(model_, next);
+  follow_signals(model(), next);
   return std::exchange(state_, std::move(next));
 }
 

@@ -148,6 +148,20 @@ def test_strengths_in_growing_cells_agree_with_differences():
         assert check.error < 1e-6, check
 
 
+@pytest.mark.parametrize("model", ["corotational", "neo-hookean"])
+def test_stiffness_of_cells_agrees_with_differences(model):
+    scenario = plica.Scenario(BLOCK)
+    scenario["elasticity.model"] = model
+    factors = [1.3, 0.7, 1.1, 0.8, 1.2, 0.9]
+    tape = plica.record(scenario, strengths={"elasticity": factors})
+    for check in plica.check_gradient(tape, moved(tape), of="elasticity", by="cell"):
+        assert check.error < 1e-6, check
+    # All together are the modulus.
+    by_cell = tape.gradient(moved(tape), of="elasticity", by="cell")
+    by_key = tape.gradient(moved(tape), of="elasticity.young_modulus_Pa") * scenario["elasticity.young_modulus_Pa"]
+    assert by_cell @ factors == pytest.approx(by_key, rel=1e-6)
+
+
 def test_one_way_back_gives_all_keys(tape):
     keys = ["cortex.apical.tension_mN_per_m", "elasticity.young_modulus_Pa"]
     both = tape.gradient("top.area_um2", of=keys)
@@ -222,7 +236,7 @@ WRONG = [
     (dict(outcome="top.area_um2", of="cortex.apical.region"), 'cortex.apical.region: \'all\'; choose a key that has a number'),
     (dict(outcome="top.area_um2", of="cortex.apical.stiffness_mN_per_m"), "is 0, where its change has no scale"),
     (dict(outcome="top.area_um2", of="cortex.apica", by="cell"), 'no law "cortex.apica"; laws: '),
-    (dict(outcome="top.area_um2", of="drag", by="cell"), "drag: has no strengths of cells; choose a contraction or a cortex"),
+    (dict(outcome="top.area_um2", of="drag", by="cell"), "drag: has no strengths of cells; choose a contraction, a cortex or elasticity"),
     (dict(outcome="top.area_um2", of=["cortex.apical"], by="cell"), "give one contraction or cortex"),
     (dict(outcome="top.area_um2", of="cortex.apical", by="face"), 'by: \'face\'; give "cell"'),
     (dict(outcome="top.area_um2", of="elasticity.young_modulus_Pa", at_min=0.7), "no step ends at 0.7 min"),
@@ -241,6 +255,7 @@ def test_bad_arguments_are_told(tape, arguments, message):
 
 REFUSED = [
     ({"cortex.apical.trigger": {"measure": "apical_area_ratio", "below": 0.9}}, "cortex.apical: a jump at a time given by a trigger"),
+    ({"cortex.apical.follow": {"measure": "stress_Pa", "from": 0, "to": 9}}, "cortex.apical: activity by stress has no"),
     ({"signal.u": {"initial": 0.1}, "cortex.apical.trigger": {"signal": "u", "above": 0.5}}, "cortex.apical: a trigger by a signal has no"),
     ({"dynamics.density_kg_per_m3": 1000, "time.integrator": "backward-euler"}, "inertia: this law has no derivatives yet"),
     ({"time.scheme": "linearly-implicit", "volume.method": "projection"}, "only Newton's steps"),

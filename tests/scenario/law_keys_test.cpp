@@ -34,10 +34,19 @@ TEST(CortexKeys, SayWhatWouldBeRight) {
        "4: cortex.a.profile.about: region \"belly\" does not exist; use one of: all"},
       {cortex + "tension_mN_per_m = 1\ntrigger = { below = 0.3 }",
        "4: cortex.a.trigger.measure: is missing; set measure to one of: apical_area_ratio | basal_area_ratio | "
-       "height_ratio | apical_stretch; or set signal"},
+       "height_ratio | apical_stretch | stress_Pa; or set signal"},
+      {"elasticity.model = \"shape-memory\"\n" + cortex +
+           "tension_mN_per_m = 1\nfollow = { measure = \"stress_Pa\", from = 0, to = 10 }",
+       "5: cortex.a.follow.measure: model \"shape-memory\" has no stress; set elasticity.model to \"corotational\", or "
+       "measure to \"apical_stretch\""},
+      {cortex +
+           "stiffness_mN_per_m = 1\ndirection = { axis = \"along\", weakest = 0.5 }\n[cortex.b]\nregion = \"all\"\n"
+           "tension_mN_per_m = 1\ntrigger = { measure = \"stress_Pa\", above = 10 }",
+       "8: cortex.b.trigger.measure: stress_Pa has no passive fibres, such as cortex.a; put stiffness and crowding of "
+       "cortex.a into a table without direction"},
       {cortex + "tension_mN_per_m = 1\nfollow = { of = \"neighbours\" }",
        "4: cortex.a.follow.measure: is missing; set measure to one of: apical_area_ratio | basal_area_ratio | "
-       "height_ratio | apical_stretch; or set signal"},
+       "height_ratio | apical_stretch | stress_Pa; or set signal"},
       {cortex + "tension_mN_per_m = 1\ntrigger = { measure = \"height_ratio\" }",
        "4: cortex.a.trigger.below: is missing; set either below or above"},
       {cortex + "tension_mN_per_m = 1\nfollow = { measure = \"height_ratio\", from = 1, to = 1 }",

@@ -245,8 +245,8 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
     expect_words(table, "delay.axis", words::delay_axes);
     expect_words(table, "delay.from", words::delay_starts);
   }
-  expect_words("cortex.*", "trigger.measure", words::shape_measures);
-  expect_words("cortex.*", "follow.measure", words::shape_measures);
+  expect_words("cortex.*", "trigger.measure", words::cell_measures);
+  expect_words("cortex.*", "follow.measure", words::cell_measures);
   for (const char* key : {"trigger.of", "follow.of"}) expect_words("cortex.*", key, words::read_cells);
   expect_words("cortex.*", "direction.axis", words::fibre_axes);
   expect_words("enclosed.*", "volume", words::enclosed_states);

@@ -208,7 +208,7 @@ TEST(MonitorRules, EveryErrorIsOneLineWithARemedy) {
       {"[monitor.a]",
        "1: monitor.a.quantity: is missing; set quantity to one of: position | displacement | speed | velocity | "
        "deviation | relative_energy_norm | surface_distance | force | volume | area | area_ratio | apical_elongation | "
-       "pressure | apical_load | inward_displacement | depth | curvature | kinetic_energy | time | wall"},
+       "pressure | stress | apical_load | inward_displacement | depth | curvature | kinetic_energy | time | wall"},
       {"[monitor.a]\nquantity = \"speed\"\nregion = \"al\"",
        "3: monitor.a.region: region \"al\" does not exist; use \"all\" (nearest match)"},
       {"[monitor.a]\nquantity = \"position\"", "1: monitor.a.axis: is missing; set axis to \"x\", \"y\" or \"z\""},
@@ -231,6 +231,8 @@ TEST(MonitorRules, EveryErrorIsOneLineWithARemedy) {
        "quantity to \"speed\""},
       {"[volume]\nmethod = \"none\"\n[monitor.a]\nquantity = \"pressure\"",
        "4: monitor.a.quantity: cell pressure requires conserved cell volumes; set volume.method to \"coupled\""},
+      {"[elasticity]\nmodel = \"shape-memory\"\n[monitor.a]\nquantity = \"stress\"",
+       "4: monitor.a.quantity: model \"shape-memory\" has no stress; set elasticity.model to \"corotational\""},
       // Criteria.
       {"[stop.a]\nabove = 1", "1: stop.a.monitor: is missing; set monitor to a text"},
       {floor_monitor + "[stop.a]\nmonitor = \"floor\"", "4: stop.a: has no bound; set above or below"},

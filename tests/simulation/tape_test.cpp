@@ -172,6 +172,16 @@ saturation_ratio = 0.2
                    4});
 }
 
+// Factors on the stiffness of cells, in both laws, with relaxation, viscosity and growth.
+TEST(Tape, GradientsByStiffnessOfCellsAgreeWithDifferences) {
+  const std::string growing = "growth.all={region=\"all\",rate_per_h=100}";
+  for (const std::vector<std::string>& overrides : std::vector<std::vector<std::string>>{
+           {"elasticity={model=\"corotational\",young_modulus_Pa=500}", "dynamics.shear_viscosity_Pa_s=1000"},
+           {"elasticity={model=\"neo-hookean\",young_modulus_Pa=500,relaxation_min=0.05}", growing},
+           {"elasticity={model=\"corotational\",young_modulus_Pa=500}", growing, "embryo.elements_per_cell=[1,1,2]"}})
+    expect_gradient({pulled_block(), overrides, {{"elasticity.young_modulus_Pa", 500}}, "elasticity", 3});
+}
+
 // Before the first exchange: walls by their direction, with noise; interiors that flow.
 TEST(Tape, GradientsOfPolarTensionsAgreeWithDifferences) {
   expect_gradient({find_scenario("convergent-extension"),

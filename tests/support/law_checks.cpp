@@ -211,7 +211,8 @@ void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um,
 
     const std::size_t cells = tissue.cells.size();
     const std::vector<double> ones(cells, 1.0);
-    if (!law.pattern() || law.pattern()->cells.empty() || !derivatives.with_strengths(ones)) continue;
+    if (law.pattern() && law.pattern()->cells.empty()) continue;
+    if (!derivatives.with_strengths(ones)) continue;
     std::vector<double> of_cells(cells, 0.0);
     derivatives.add_strength_gradient(motion.step(), adjoint, of_cells);
     for (std::size_t c = 0; c < cells; ++c) {

@@ -80,6 +80,9 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
                                                   std::span<const double> internal) const override;
   [[nodiscard]] bool accepts(std::span<const double> internal, const Tissue& tissue) const override;
+  /// Add the integral of its Cauchy stress over each cell, nN um (mechanics/cell_stress.hpp), by elastic stiffness and
+  /// crowding of faces without fibres.
+  void add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const;
   /// Override the activity of the tension; stiffness keeps its program.
   [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
                                                     std::span<const double> activities) const override;
@@ -91,10 +94,14 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] std::span<const double> face_factors(std::span<const double> internal) const {
     return memory(internal).factors;
   }
+  /// Whether activities read the passive stress of cells, which is then the last signal, kPa.
+  [[nodiscard]] bool reads_stress() const {
+    return activation_.is_used() && rule_.activation.measure == ShapeMeasure::passive_stress;
+  }
   [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
                                                  double time_s) const override;
 
-  /// NoGradient where signals start cells, forces jump where a cell starts, or fibres turn.
+  /// NoGradient where signals start cells, stress acts on them, forces jump where a cell starts, or fibres turn.
   [[nodiscard]] const LawDerivatives& derivatives() const override;
   void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
                           const BeginningGradient& gradient) const override;

@@ -8,6 +8,7 @@
 namespace plica {
 
 const LawDerivatives& Cortex::derivatives() const {
+  if (reads_stress()) refuse_gradient("activity by stress has no derivative; use a measure of shape or a signal");
   if (rule_.activation.signal && activation_.starts())
     refuse_gradient("a trigger by a signal has no derivative yet; use follow");
   if (rule_.fibres.turn())
@@ -183,6 +184,24 @@ void Cortex::add_strength_gradient(const Step& step, std::span<const Vec3> adjoi
       if (active != 0) tension += active * activity(cell, step.end_time_s, step.internal, heights_[f]);
       if (elastic != 0) tension += elastic * stiffening(cell, step, heights_[f]);
       of_cells[cell.index()] -= weight * tension * increases[f];
+    });
+  }
+}
+
+// The area of a face changes by sum_i dA/dx_i . E x_i with a strain E. Each cell has its own layer of a lateral face.
+void Cortex::add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const {
+  if (rule_.stiffness == 0 && rule_.crowding == 0) return;
+  const std::vector<double> now = areas(step.positions);
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    const std::array<Vec3, 4> corners = gather(step.positions, faces_[f].nodes),
+                              gradient = facet_area_gradient(corners);
+    Mat3 of_area = Mat3::Zero();
+    for (int i = 0; i < 4; ++i) of_area += gradient[i] * corners[i].transpose();
+    const double ratio = rest_areas_[f] / now[f];
+    for_cells(faces_[f], [&](CellId cell, double weight) {
+      double tension = -rule_.crowding * ratio * ratio;
+      if (rule_.stiffness != 0) tension += elastic(f, now[f], step, stiffening(cell, step, heights_[f]), false).tension;
+      of_cells[cell.index()] += weight * tension * of_area;
     });
   }
 }

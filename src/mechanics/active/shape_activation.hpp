@@ -16,11 +16,11 @@ namespace plica {
 struct BeginningGradient;
 struct Step;
 
-/// Quantity of a cell relative to its reference value. The stretch is that of its apical surface along the direction of
-/// largest stretch.
-enum class ShapeMeasure { apical_area_ratio, basal_area_ratio, height_ratio, apical_stretch };
+/// Quantity of a cell relative to its reference value, or its passive stress (mechanics/cell_stress.hpp). The stretch
+/// is that of its apical surface along the direction of largest stretch.
+enum class ShapeMeasure { apical_area_ratio, basal_area_ratio, height_ratio, apical_stretch, passive_stress };
 
-/// Their names in scenarios and reactions, in order.
+/// Names in scenarios and reactions of those of shape, in order.
 inline constexpr std::array<std::string_view, 4> shape_measure_names = {"apical_area_ratio", "basal_area_ratio",
                                                                         "height_ratio", "apical_stretch"};
 
@@ -29,10 +29,11 @@ struct ShapeActivationRule {
   enum class Kind { none, starts_below, starts_above, follows };
   Kind kind = Kind::none;
   ShapeMeasure measure = ShapeMeasure::apical_area_ratio;
-  double threshold = 1;                    // for both triggers
-  double from = 1, to = 0;                 // follow: activity 0 up to `from`, 1 beyond `to`, linear between
-  std::optional<std::size_t> signal = {};  // place among the model's signals, which replaces the measure
-  bool of_neighbours = false;              // their mean, instead of the cell's own value
+  double threshold = 1;     // for both triggers
+  double from = 1, to = 0;  // follow: activity 0 up to `from`, 1 beyond `to`, linear between
+  // Place among the model's signals, which replaces the measure; after the last: the stress (follow_signals).
+  std::optional<std::size_t> signal = {};
+  bool of_neighbours = false;  // their mean, instead of the cell's own value
   // Triggers: start at the crossing of the threshold, interpolated linearly within the step, not at the end of the
   // step.
   bool at_crossing = false;

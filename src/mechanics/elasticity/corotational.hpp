@@ -37,6 +37,13 @@ class Corotational final : public BatchLaw<Corotational, 8>, public LawDerivativ
                           const BeginningGradient& gradient) const override {
     if (shear_viscosity_ > 0) add_viscous_gradient(*this, step, adjoint, gradient);
   }
+  /// Strengths are moduli, not viscosities.
+  void add_strength_gradient(const Step& step, std::span<const Vec3> adjoint,
+                             std::span<double> of_cells) const override;
+  [[nodiscard]] std::unique_ptr<Law> with_strengths(std::span<const double> factors) const override;
+
+  /// Add the integral of its Cauchy stress over each cell, nN um, without viscosity.
+  void add_stress_integrals(const Tissue& tissue, const Step& step, std::span<Mat3> of_cells) const;
 
   [[nodiscard]] CorotationalArrays kernel_arrays(const Step& step) const;
 
@@ -45,8 +52,11 @@ class Corotational final : public BatchLaw<Corotational, 8>, public LawDerivativ
   static constexpr std::array tables = {&generic::corotational_kernels, &avx2::corotational_kernels,
                                         &avx512::corotational_kernels};
   void fit(const Tissue& tissue, std::size_t element) override;
+  [[nodiscard]] std::vector<double> energies(const CorotationalArrays& of_kernels) const;
 
   ElementValues<ElasticModuli> moduli_;
+  std::vector<CellId> element_cell_;
+  std::vector<double> strengths_;  // cells; factors on moduli; empty: 1
   double shear_viscosity_;
   std::vector<CorotationalBatch> batches_;     // eight elements each
   std::vector<ViscousBatch> viscous_batches_;  // viscous counterpart

@@ -97,9 +97,10 @@ void NeoHookean::fit(const Tissue& tissue, std::size_t place) {
   NeoHookeanBatch& batch = batches_[place / batch_size];
   for (int i = 0; i < 8; ++i) batch.nodes[i][lane] = 3 * elements_[e][i].number();
   const auto& [shear_modulus, relaxation_s] = materials_[e];
+  const double strength = strengths_.empty() ? 1 : strengths_[element_cell_[e].index()];
   for (int g = 0; g < 8; ++g) {
     const Mat3 D0 = gauss_jacobian(tissue.element_rest_shape[e], g);
-    batch.weights[g][lane] = shear_modulus * D0.determinant();
+    batch.weights[g][lane] = strength * shear_modulus * D0.determinant();
     put((D0.transpose() * D0).inverse(), &batch.metrics[g][0][lane]);
     if (!flows_) continue;
     for (int k = 0; k < 9; ++k) flow_batches_[place / batch_size].frames[g][k][lane] = D0.data()[k];
@@ -235,26 +236,73 @@ void NeoHookean::add_internal_gradient(const Step& step, std::span<const double>
   for (std::size_t place = elements_.size(); place < places(); ++place) add(place);
 }
 
+// A Gauss point has -w (d tr(S^-1 dC)/2 - tr(F^-1 dF)), and -w (tr(dC)/2 - tr(F^-1 dF)) if it does not flow, where dF
+// and dC are along the adjoint.
+void NeoHookean::add_strength_gradient(const Step& step, std::span<const Vec3> adjoint,
+                                       std::span<double> of_cells) const {
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const HexPoints points = gather(step.positions, elements_[e]), along = gather(adjoint, elements_[e]);
+    for (int g = 0; g < 8; ++g) {
+      const Mat3 to_rest = gauss_jacobian(rest_[e], g).inverse();
+      const Mat3 F = gauss_jacobian(points, g) * to_rest, dF = gauss_jacobian(along, g) * to_rest;
+      const Mat3 half = F.transpose() * dF;
+      double energy = half.trace();
+      if (flows_ && flow_batches_[e / batch_size].rates[e % batch_size] > 0) {
+        const Mat3 S = flowing_point(e, g, step).sum;
+        energy = std::cbrt(S.determinant()) * (S.inverse() * half).trace();
+      }
+      energy -= (F.inverse() * dF).trace();
+      of_cells[element_cell_[e].index()] -= batches_[e / batch_size].weights[g][e % batch_size] * energy;
+    }
+  }
+}
+
+std::unique_ptr<Law> NeoHookean::with_strengths(std::span<const double> factors) const {
+  auto law = std::make_unique<NeoHookean>(*this);
+  law->strengths_.resize(factors.size(), 1.0);
+  for (std::size_t c = 0; c < factors.size(); ++c) law->strengths_[c] *= factors[c];
+  for (std::size_t place = 0; place < places(); ++place)
+    for (int g = 0; g < 8; ++g)
+      law->batches_[place / batch_size].weights[g][place % batch_size] *=
+          factors[element_cell_[std::min(place, elements_.size() - 1)].index()];
+  return law;
+}
+
 std::unique_ptr<Law> NeoHookean::after_change(const Tissue& tissue, const TissueChange& change,
                                               std::span<const Vec3>) const {
-  return std::make_unique<NeoHookean>(tissue, materials_.after_change(tissue, change), kernels_);
+  std::vector<NeoHookeanMaterial> materials = materials_.after_change(tissue, change);
+  for (std::size_t e = 0; e < materials.size() && !strengths_.empty(); ++e)
+    materials[e].shear_modulus *= strengths_[change.origin[tissue.element_cell[e].index()].index()];
+  return std::make_unique<NeoHookean>(tissue, std::move(materials), kernels_);
 }
 
 std::optional<Mat3> NeoHookean::elastic_stretch(std::span<const double> internal, std::span<const Vec3> positions,
                                                 std::span<const ElementId> elements) const {
-  Mat3 sum = Mat3::Zero();
-  double weights = 0;
-  for (const ElementId id : elements) {
-    const std::size_t e = id.index();
-    const HexPoints points = gather(positions, elements_[e]);
-    for (int g = 0; g < 8; ++g) {
-      const double weight = batches_[e / batch_size].weights[g][e % batch_size];
-      const Mat3 F = deformation_gradient(points, rest_[e], g);
-      sum += weight * F * (flows_ ? flowed(internal, id, g).inverse() : Mat3(Mat3::Identity())) * F.transpose();
-      weights += weight;
-    }
+  Stretches all;
+  for (const ElementId id : elements) add_stretches(internal, positions, id, all);
+  return Mat3(all.sum / all.weights);
+}
+
+void NeoHookean::add_stretches(std::span<const double> internal, std::span<const Vec3> positions, ElementId element,
+                               Stretches& stretches) const {
+  const std::size_t e = element.index();
+  const HexPoints points = gather(positions, elements_[e]);
+  for (int g = 0; g < 8; ++g) {
+    const double weight = batches_[e / batch_size].weights[g][e % batch_size];
+    const Mat3 F = deformation_gradient(points, rest_[e], g);
+    stretches.sum +=
+        weight * F * (flows_ ? flowed(internal, element, g).inverse() : Mat3(Mat3::Identity())) * F.transpose();
+    stretches.weights += weight;
   }
-  return Mat3(sum / weights);
+}
+
+// The Kirchhoff stress is mu (F C_p^-1 F^T - I).
+void NeoHookean::add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const {
+  std::vector<Stretches> of_elements(elements_.size());
+  chunks_.for_elements(
+      [&](std::size_t e) { add_stretches(step.internal, step.positions, ElementId(e), of_elements[e]); });
+  for (std::size_t e = 0; e < elements_.size(); ++e)
+    of_cells[element_cell_[e].index()] += of_elements[e].sum - of_elements[e].weights * Mat3::Identity();
 }
 
 std::vector<double> NeoHookean::internal_after_change(std::span<const double> internal, const Tissue& tissue,

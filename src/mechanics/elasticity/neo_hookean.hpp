@@ -36,6 +36,10 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8>, public LawDerivatives {
                           const BeginningGradient& gradient) const override;
   void add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
                              std::span<Vec3> positions, const BeginningGradient& gradient) const override;
+  /// Strengths are shear moduli.
+  void add_strength_gradient(const Step& step, std::span<const Vec3> adjoint,
+                             std::span<double> of_cells) const override;
+  [[nodiscard]] std::unique_ptr<Law> with_strengths(std::span<const double> factors) const override;
 
   /// Return, if cells relax, C_p at the beginning of this step, then of the previous step, in the layout of kernels.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
@@ -52,6 +56,9 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8>, public LawDerivatives {
   [[nodiscard]] std::optional<Mat3> elastic_stretch(std::span<const double> internal, std::span<const Vec3> positions,
                                                     std::span<const ElementId> elements) const override;
 
+  /// Add the integral of its Cauchy stress over each cell, nN um.
+  void add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const;
+
   /// Return C_p of a Gauss point in an internal state.
   [[nodiscard]] Mat3 flowed(std::span<const double> internal, ElementId element, int gauss_point) const;
 
@@ -65,6 +72,13 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8>, public LawDerivatives {
     std::span<const FlowedBatch> now, earlier;
   };
   [[nodiscard]] Memory memory(std::span<const double> internal) const;
+  // Sums over Gauss points of elements: weights, and weights times the left Cauchy-Green tensor of the elastic strain.
+  struct Stretches {
+    double weights = 0;
+    Mat3 sum = Mat3::Zero();
+  };
+  void add_stretches(std::span<const double> internal, std::span<const Vec3> positions, ElementId element,
+                     Stretches& stretches) const;
   [[nodiscard]] Mat3 flowed_before(std::size_t element, int gauss_point, const Step& step) const;
   [[nodiscard]] NeoHookeanArrays kernel_arrays(const Step& step) const;
   // A Gauss point at the end of a step: F, the inverse of dx/d(reference) at rest, C_b + r C and r. `place`: the
@@ -79,7 +93,8 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8>, public LawDerivatives {
                      const BeginningGradient& gradient) const;
 
   ElementValues<NeoHookeanMaterial> materials_;
-  bool flows_;  // whether any element relaxes
+  std::vector<double> strengths_;  // cells; factors on shear moduli; empty: 1
+  bool flows_;                     // whether any element relaxes
   std::vector<CellId> element_cell_;
   std::vector<HexPoints> rest_;  // elements; um
   std::vector<NeoHookeanBatch> batches_;

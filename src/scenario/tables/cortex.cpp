@@ -144,7 +144,7 @@ ShapeActivationRule make_shape_activation(const CortexInput& input, const Scenar
   ShapeActivationRule rule = make_reading(input.trigger, scenario);
   const std::optional<double>& below = input.trigger.below;
   rule.kind = below ? ShapeActivationRule::Kind::starts_below : ShapeActivationRule::Kind::starts_above;
-  rule.threshold = below ? *below : *input.trigger.above;
+  rule.threshold = reading_unit(rule) * (below ? *below : *input.trigger.above);
   return rule;
 }
 
@@ -218,7 +218,7 @@ ScenarioTable cortex_table() {
               {"stiffness_program.time_s", "stiffness_program.time_min", "stiffness_program.activity"});
   info.rows.insert(info.rows.end(),
                    {
-                       row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::shape_measures),
+                       row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::cell_measures),
                            "Measure that starts the time courses."),
                        row("trigger.signal", &X::trigger, &TriggerInput::signal, anything,
                            "Instead of `measure`: name of a `[signal.NAME]`."),
@@ -226,7 +226,7 @@ ScenarioTable cortex_table() {
                            "Whose: its own, or the mean of cells that share a lateral face with it."),
                        row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
                        row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
-                       row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::shape_measures),
+                       row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::cell_measures),
                            "Measure that scales the active tension."),
                    });
   add_follow(info.rows, row);

@@ -7,6 +7,28 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
+namespace {
+
+// Checks that the stress of cells is known, if they read it.
+bool check_stress(const std::string& part, const ActivationInput& activation, const Scenario& scenario, Input& input) {
+  if (activation.measure != "stress_Pa") return true;
+  if (model_of(scenario.elasticity) == ElasticModel::shape_memory) {
+    if (input.sound("elasticity.model"))
+      input.report(part + ".measure", "model \"shape-memory\" has no stress",
+                   "set elasticity.model to \"corotational\", or measure to \"apical_stretch\"");
+    return false;
+  }
+  for (const auto& [name, cortex] : scenario.cortices)
+    if (cortex.faces != "lateral" && !cortex.direction.axis.empty() &&
+        (cortex.stiffness_mN_per_m > 0 || cortex.crowding_mN_per_m > 0)) {
+      input.report(part + ".measure", fmt::format("stress_Pa has no passive fibres, such as cortex.{}", name),
+                   fmt::format("put stiffness and crowding of cortex.{} into a table without direction", name));
+      return false;
+    }
+  return true;
+}
+
+}  // namespace
 
 bool check_reading(const std::string& part, const ActivationInput& reading, bool has_bounds, const Scenario& scenario,
                    Input& input, bool may_be_shape) {
@@ -19,10 +41,11 @@ bool check_reading(const std::string& part, const ActivationInput& reading, bool
     if (!may_be_shape) return report(".signal", "is missing", "set signal to the name of a [signal.NAME]");
     return report(
         ".measure", "is missing",
-        fmt::format("set measure to one of: {}; or set signal", fmt::join(words_of(words::shape_measures), " | ")));
+        fmt::format("set measure to one of: {}; or set signal", fmt::join(words_of(words::cell_measures), " | ")));
   }
   if (!reading.measure.empty() && !reading.signal.empty())
     return report(".signal", "conflicts with `measure`, which is also set", "remove one of them");
+  if (!check_stress(part, reading, scenario, input)) return false;
   if (reading.signal.empty() || scenario.signals.contains(reading.signal)) return reading.is_used();
   const std::string problem = fmt::format("no signal \"{}\"", reading.signal);
   if (scenario.signals.empty()) return report(".signal", problem, fmt::format("add [signal.{}]", reading.signal));
@@ -45,10 +68,10 @@ bool check_follow(const std::string& table, const FollowInput& follow, const Sce
 
 ShapeActivationRule make_reading(const ActivationInput& input, const Scenario& scenario) {
   ShapeActivationRule rule;
-  rule.measure = meaning_of(words::shape_measures, input.measure, rule.measure);
+  rule.measure = meaning_of(words::cell_measures, input.measure, rule.measure);
   rule.of_neighbours = meaning_of(words::read_cells, input.of);
   const auto signal = scenario.signals.find(input.signal);
-  if (signal != scenario.signals.end())
+  if (signal != scenario.signals.end() || rule.measure == ShapeMeasure::passive_stress)
     rule.signal = static_cast<std::size_t>(std::distance(scenario.signals.begin(), signal));
   return rule;
 }
@@ -57,8 +80,8 @@ ShapeActivationRule make_follow(const FollowInput& input, const Scenario& scenar
   if (!input.is_used()) return {};
   ShapeActivationRule rule = make_reading(input, scenario);
   rule.kind = ShapeActivationRule::Kind::follows;
-  rule.from = *input.from;
-  rule.to = *input.to;
+  rule.from = reading_unit(rule) * *input.from;
+  rule.to = reading_unit(rule) * *input.to;
   return rule;
 }
 

@@ -47,6 +47,9 @@ void check_monitor(const std::string& path, MonitorInput& monitor, const Scenari
       input.sound("dynamics.density_kg_per_m3"))
     input.report(address, "kinetic energy requires a density above 0",
                  "set dynamics.density_kg_per_m3, or set quantity to \"speed\"");
+  if (monitor.quantity == "stress" && model_of(scenario.elasticity) == ElasticModel::shape_memory &&
+      input.sound("elasticity.model"))
+    input.report(address, "model \"shape-memory\" has no stress", "set elasticity.model to \"corotational\"");
   if (monitor.quantity == "pressure" && method_of(scenario.volume) == VolumeMethod::none &&
       input.sound("volume.method"))
     input.report(address, "cell pressure requires conserved cell volumes", "set volume.method to \"coupled\"");

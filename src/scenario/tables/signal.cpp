@@ -46,7 +46,7 @@ void check_reaction(const std::string& table, const S& signal, const std::vector
                  error.unknown.empty() ? "write one expression, such as \"k * u * (1 - u)\""
                  : nearest             ? fmt::format("use \"{}\" (nearest match)", *nearest)
                                        : fmt::format("use signals ({}), measures ({}), or names in constants",
-                                                     fmt::join(signals, ", "), fmt::join(words_of(words::shape_measures), ", ")));
+                                                     fmt::join(signals, ", "), fmt::join(shape_measure_names, ", ")));
   }
 }
 

@@ -162,6 +162,10 @@ bool check_follow(const std::string& table, const FollowInput& follow, const Sce
 
 /// Make the rule of what cells read, without bounds.
 ShapeActivationRule make_reading(const ActivationInput& input, const Scenario& scenario);
+/// Unit in which a scenario gives the bounds of what cells read.
+inline double reading_unit(const ShapeActivationRule& rule) {
+  return rule.measure == ShapeMeasure::passive_stress ? units::pascal : 1;
+}
 /// Make the rule of an activity that follows it.
 ShapeActivationRule make_follow(const FollowInput& input, const Scenario& scenario);
 

@@ -23,8 +23,6 @@ namespace plica {
 
 class KeptPreconditioner {
  public:
-  static constexpr std::size_t most_obstacle_changes = 32;  // before the factor is recomputed
-
   /// Make a preconditioner of `system`, for steps with the patterns of `step`. `before`: that of earlier patterns,
   /// whose order of elimination serves if it suits these; or null.
   KeptPreconditioner(const Model& model, const LinearisedSystem& system, LinearMethod method, const Step& step,
@@ -64,7 +62,8 @@ class KeptPreconditioner {
       matrix_.write_projected_blocks(frames, values_);
       if (!preconditioner_->factorise(values_, rigid_motions(at))) continue;
       if (factor_ != nullptr)
-        contacts_.begin(model_, system_.contacts(), matrix_, frames, at.on_obstacle, most_obstacle_changes);
+        contacts_.begin(model_, system_.contacts(), matrix_, frames, at.on_obstacle,
+                        most_obstacle_changes(frames.size()));
       border_dense_rows();
       on_obstacle_ = at.on_obstacle;
       return true;
@@ -111,6 +110,8 @@ class KeptPreconditioner {
   [[nodiscard]] std::span<const double> weights() const { return weights_; }
 
  private:
+  // Changed contacts for which a factor is kept. A new one takes ever longer, compared with a border, the larger it is.
+  static std::size_t most_obstacle_changes(std::size_t nodes) { return nodes <= 20'000 ? 32 : 512; }
   // gamma times the size of a cell, relative to the mean stiffness of a node. A large value saves iterations for the
   // multipliers. Its limits: single precision must resolve A beside it; multigrid converges slowly on nearly
   // incompressible cells (and has ChequerboardFactor for pressures, so a factor of 2 changes little); where each

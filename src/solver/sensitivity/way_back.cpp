@@ -173,7 +173,9 @@ class WayBack {
     std::vector<GrowthTensor> tensors;
     for (std::size_t l = 0; l < model_.laws.size(); ++l)
       model_.laws[l]->grow(run_.states.front().internals[l], step.end_time_s, tensors);
-    return input_.unscaled_law->grown(step.grown->tissue, {}, tensors);
+    std::vector<ElementId> elements;  // any may have other rest shapes
+    for (std::size_t e = 0; e < step.grown->tissue.elements.size(); ++e) elements.emplace_back(e);
+    return input_.unscaled_law->grown(step.grown->tissue, elements, tensors);
   }
   [[nodiscard]] Vectors on_obstacles(const Step& step, const Iterate& at, const Vectors& by_end) const {
     if (input_.parameters.empty() || !touches_obstacles(at)) return {};

@@ -444,7 +444,8 @@ TEST(ShapeActivation, ARunGoesOnToTheSameBits) {
       {"cortex.shortening.program.time_min=[0, 11]", "time.end_min=17.8",
        "cortex.shortening.trigger.measure=apical_area_ratio", "cortex.shortening.trigger.below=0.3",
        "cortex.surface.tension_mN_per_m=0.01", "cortex.surface.follow.measure=height_ratio",
-       "cortex.surface.follow.of=neighbours", "cortex.surface.follow.from=1", "cortex.surface.follow.to=1.5"});
+       "cortex.surface.follow.of=neighbours", "cortex.surface.follow.from=1", "cortex.surface.follow.to=1.5",
+       "cortex.felt={region=\"all\", tension_mN_per_m=0.1, follow={measure=\"stress_Pa\", from=0, to=20}}"});
   Simulation whole(scenario);
   std::optional<RunMemory> kept;
   while (whole.step())

@@ -81,6 +81,33 @@ TEST(Corotational, EveryCellHasItsOwnModulus) {
     EXPECT_LE((both[n] - 2 * first[n] - 0.3 * second[n]).norm(), 1e-13 * largest(both));
 }
 
+// Also after growth of rest shapes and division.
+TEST(Corotational, StrengthsOfCellsScaleTheirModuli) {
+  Model model(build_block({.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}}));
+  const ElasticModuli moduli = ElasticModuli::from_young(young, poisson);
+  const std::vector<double> factors = {1, 0.2, 3};
+  const auto law_of = [&](const Tissue& tissue, const std::vector<double>& of_cells) {
+    return std::make_unique<Corotational>(tissue, in_elements(tissue, moduli, of_cells), 2);
+  };
+  const auto expect_alike = [](const Law& law, const Law& expected, const Tissue& tissue) {
+    const Motion motion = random_motion(tissue, 3, 3);
+    const Eigen::VectorXd forces = flat(forces_of(expected, motion.step()));
+    EXPECT_LE((flat(forces_of(law, motion.step())) - forces).norm(), 1e-13 * forces.norm());
+    EXPECT_GT(forces.norm(), 0);
+  };
+  const std::unique_ptr<Law> law = with_strengths(*law_of(model.tissue, {}), factors);
+  expect_alike(*law, *law_of(model.tissue, factors), model.tissue);
+  Tissue larger = model.tissue;
+  for (HexPoints& rest : larger.element_rest_shape)
+    for (Vec3& corner : rest) corner *= 1.1;
+  const std::vector<ElementId> all = {ElementId(0), ElementId(1), ElementId(2)};
+  expect_alike(*law->grown(larger, all, {}), *law_of(larger, factors), larger);
+  model.laws.push_back(law->clone());
+  State state = rest_state(model);
+  const TissueChange division = divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 1}}});
+  expect_alike(*model.laws[0], *law_of(model.tissue, inherited(division, factors)), model.tissue);
+}
+
 // Daughters have their mother's, in both laws.
 TEST(Corotational, ModuliOfCellsAreInherited) {
   Model model(build_block({.length_um = 60, .width_um = 20, .cell_height_um = 40, .cells = {3, 1, 1}}));

@@ -58,6 +58,29 @@ TEST(NeoHookean, DerivativesOfARunAgreeWithFiniteDifferences) {
   check_law_derivatives(law, tissue, 2, flowing_motion(law, tissue, 2, 1).internal);
 }
 
+// Also after growth of rest shapes and division.
+TEST(NeoHookean, StrengthsOfCellsScaleTheirModuli) {
+  Model model(build_block(two_cells));
+  const auto expect_alike = [](const Law& law, const NeoHookean& expected, const Tissue& tissue) {
+    const Motion motion = flowing_motion(expected, tissue, 2, 1);
+    const Eigen::VectorXd forces = flat(forces_of(expected, motion.step()));
+    EXPECT_LE((flat(forces_of(law, motion.step())) - forces).norm(), 1e-13 * forces.norm());
+    EXPECT_GT(forces.norm(), 0);
+  };
+  const NeoHookean even(model.tissue, materials_of(model.tissue, {0.4, 0.4}, {2, 0}));
+  const std::unique_ptr<Law> law = with_strengths(even, std::vector<double>{1, 0.25});
+  expect_alike(*law, {model.tissue, materials_of(model.tissue, {0.4, 0.1}, {2, 0})}, model.tissue);
+  Tissue larger = model.tissue;
+  for (HexPoints& rest : larger.element_rest_shape)
+    for (Vec3& corner : rest) corner *= 1.1;
+  const std::vector<ElementId> all = {ElementId(0), ElementId(1)};
+  expect_alike(*law->grown(larger, all, {}), {larger, materials_of(larger, {0.4, 0.1}, {2, 0})}, larger);
+  model.laws.push_back(law->clone());
+  State state = rest_state(model);
+  divide_cells(model, state, std::vector<PlannedDivision>{{{CellId(1), 1}}});
+  expect_alike(*model.laws[0], {model.tissue, materials_of(model.tissue, {0.4, 0.1, 0.1}, {2, 0, 0})}, model.tissue);
+}
+
 TEST(NeoHookean, SemidefiniteTangentIsStifferAlongRotations) {
   const Tissue tissue = distorted_block(two_cells, 2, 5);
   check_semidefinite_tangent(law_of(tissue, 0.4), tissue, 4, true);
