@@ -8,7 +8,10 @@
 namespace plica {
 
 Foundation::Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule rule)
-    : rule_(std::move(rule)), pattern_(std::move(pattern)), anchors_(tissue.rest_positions) {
+    : rule_(std::move(rule)),
+      pattern_(std::move(pattern)),
+      followed_(tissue, rule_.follow),
+      anchors_(tissue.rest_positions) {
   measure(tissue);
   support(tissue);
 }
@@ -46,15 +49,22 @@ void Foundation::support(const Tissue& tissue) {
   const std::vector<Facet>& facets = tissue.facets(rule_.side);
   cell_areas_.assign(tissue.cells.size(), 0);
   std::vector<double> areas(tissue.node_count(), 0);
+  std::vector<std::vector<std::pair<CellId, double>>> parts(followed_.is_used() ? areas.size() : 0);
   for (std::size_t f = 0; f < facets.size(); ++f) {
-    const std::size_t cell = facets[f].cell.index();
-    cell_areas_[cell] += areas_[f];
-    for (const NodeId node : facets[f].nodes)
-      areas[tissue.original(node).index()] += pattern_.strengths[cell] * areas_[f] / 4;
+    const CellId cell = facets[f].cell;
+    cell_areas_[cell.index()] += areas_[f];
+    for (const NodeId node : facets[f].nodes) {
+      const std::size_t n = tissue.original(node).index();
+      const double part = pattern_.strengths[cell.index()] * areas_[f] / 4;
+      areas[n] += part;
+      if (followed_.is_used()) parts[n].emplace_back(cell, part);
+    }
   }
   supports_.clear();
   for (std::size_t n = 0; n < areas.size(); ++n)
-    if (areas[n] != 0) supports_.push_back({n, areas[n], normals_[n]});
+    if (areas[n] != 0)
+      supports_.push_back(
+          {n, areas[n], normals_[n], parts.empty() ? decltype(parts)::value_type() : std::move(parts[n])});
 }
 
 Vec3 Foundation::displacement(const Support& support, const Step& step) const {
@@ -73,53 +83,68 @@ bool Foundation::is_pressed(const Support& support, const Step& step) const {
   return rule_.resists != FoundationRule::Resists::one_sided || support.normal.dot(displacement(support, step)) > 0;
 }
 
-double Foundation::stored(const Step& step, double activity) const {
+double Foundation::active_area(const Support& support, std::span<const double> internal, Activity activity) const {
+  if (!followed_.is_used()) return support.area;
+  double sum = 0;
+  for (const auto& [cell, area] : support.parts) sum += area * (followed_.*activity)(internal, cell);
+  return sum;
+}
+
+// Energy of springs with given areas.
+template <class AreaOf>
+double Foundation::stored(const Step& step, double activity, const AreaOf& area_of) const {
   double sum = 0;
   for (const Support& support : supports_)
-    if (is_pressed(support, step)) sum += support.area * resisted(support, displacement(support, step)).squaredNorm();
+    if (is_pressed(support, step))
+      sum += area_of(support) * resisted(support, displacement(support, step)).squaredNorm();
   return 0.5 * activity * rule_.stiffness * sum;
 }
 
 double Foundation::energy(const Step& step) const {
-  double sum = stored(step, rule_.program.at(step.end_time_s));
+  double sum = stored(step, rule_.program.at(step.end_time_s),
+                      [&](const Support& support) { return active_area(support, step.internal); });
   if (rule_.drag > 0)
     for (const Support& support : supports_)
       sum += 0.5 * damper(support, step) * resisted(support, movement(support, step)).squaredNorm();
   return sum;
 }
 
-// A rising program supplies energy; a falling one dissipates what it releases.
+// Springs that become stiffer, by program or signal, supply energy; those that become softer dissipate what they
+// release.
 EnergyFlow Foundation::energy_flow(const CompletedStep& completed) const {
-  const double from = rule_.program.at(completed.begin.end_time_s), to = rule_.program.at(completed.end.end_time_s);
-  const double before = stored(completed.begin, 1), after = stored(completed.end, 1);
-  const double programmed = (to - from) * 0.5 * (before + after);
-  EnergyFlow flow{.active = std::max(0.0, programmed),
-                  .stored = to * after - from * before,
-                  .dissipated = std::max(0.0, -programmed)};
+  const auto& [begin, end, motion] = completed;
+  const auto was = [&](const Support& support) {
+    return active_area(support, begin.internal, &FollowedSignal::before);
+  };
+  const auto is = [&](const Support& support) { return active_area(support, begin.internal); };
+  const double from = rule_.program.at(begin.end_time_s), to = rule_.program.at(end.end_time_s);
+  const double before = stored(begin, from, was), after = stored(end, to, is);
+  const double programmed = 0.5 * (stored(begin, to, is) - before + after - stored(end, from, was));
+  EnergyFlow flow{
+      .active = std::max(0.0, programmed), .stored = after - before, .dissipated = std::max(0.0, -programmed)};
   for (const Support& support : supports_)
-    flow.dissipated +=
-        damper(support, completed.motion) * resisted(support, movement(support, completed.motion)).squaredNorm();
+    flow.dissipated += damper(support, motion) * resisted(support, movement(support, motion)).squaredNorm();
   return flow;
 }
 
 void Foundation::add_forces(const Step& step, std::span<Vec3> forces) const {
   for (const Support& support : supports_) {
     Vec3 force = damper(support, step) * movement(support, step);
-    if (is_pressed(support, step)) force += spring(support, step.end_time_s) * displacement(support, step);
+    if (is_pressed(support, step)) force += spring(support, step) * displacement(support, step);
     forces[support.node] -= resisted(support, force);
   }
 }
 
 void Foundation::add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const {
   for (const Support& support : supports_) {
-    const double r = damper(support, step) + (is_pressed(support, step) ? spring(support, step.end_time_s) : 0);
+    const double r = damper(support, step) + (is_pressed(support, step) ? spring(support, step) : 0);
     product[support.node] += r * resisted(support, direction[support.node]);
   }
 }
 
 void Foundation::add_tangent(const Step& step, TangentSink& tangent) const {
   for (const Support& support : supports_) {
-    const double r = damper(support, step) + (is_pressed(support, step) ? spring(support, step.end_time_s) : 0);
+    const double r = damper(support, step) + (is_pressed(support, step) ? spring(support, step) : 0);
     Mat3 block;
     for (int axis = 0; axis < 3; ++axis) block.col(axis) = r * resisted(support, Vec3::Unit(axis));
     tangent.add_block(NodeId(support.node), NodeId(support.node), block);
@@ -135,7 +160,7 @@ void Foundation::add_force_gradient(const Step& step, std::span<const Vec3> adjo
 double Foundation::rounding(const Step& step, double position_rounding) const {
   double sum = 0;
   for (const Support& support : supports_) {
-    const double r = damper(support, step) + spring(support, step.end_time_s);
+    const double r = damper(support, step) + spring(support, step);
     sum += r * r;
   }
   return std::sqrt(sum) * position_rounding;
@@ -145,6 +170,7 @@ std::unique_ptr<Law> Foundation::after_change(const Tissue& tissue, const Tissue
                                               std::span<const Vec3> positions) const {
   auto after = std::make_unique<Foundation>(*this);
   after->pattern_ = pattern_.after_change(change);
+  after->followed_ = FollowedSignal(tissue, rule_.follow);
   after->anchors_ = with_new_nodes(tissue, change, anchors_);
   tissue.place_hanging_positions(after->anchors_);
   after->is_remeshed_ = is_remeshed_ || !change.remeshed.empty();
@@ -157,6 +183,33 @@ std::unique_ptr<Law> Foundation::after_change(const Tissue& tissue, const Tissue
   }
   after->support(tissue);
   return after;
+}
+
+std::vector<double> Foundation::first_internal(const Tissue& /*tissue*/) const {
+  return std::vector<double>(followed_.size(), 0);
+}
+
+std::vector<double> Foundation::next_internal(const Step& step) const {
+  std::vector<double> internal(step.internal.begin(), step.internal.end());
+  followed_.move_on(internal);
+  return internal;
+}
+
+std::vector<double> Foundation::internal_after_change(std::span<const double> internal, const Tissue& /*tissue*/,
+                                                      const TissueChange& change, const ChangePositions&) const {
+  return followed_.after_change(internal, change);
+}
+
+std::vector<double> Foundation::with_signals(std::span<const double> internal, std::span<const CellArray> signals,
+                                             double time_s) const {
+  std::vector<double> result(internal.begin(), internal.end());
+  followed_.follow(signals, time_s, result);
+  return result;
+}
+
+const LawDerivatives& Foundation::derivatives() const {
+  if (followed_.is_used()) refuse_gradient("a foundation that follows a signal has no gradient; remove follow");
+  return *this;
 }
 
 std::vector<double> Foundation::past() const {
@@ -182,6 +235,7 @@ std::unique_ptr<Law> Foundation::restored(const Tissue& tissue, const TissueChan
   };
   auto law = std::make_unique<Foundation>(*this);
   law->pattern_ = pattern_.after_change(change);
+  law->followed_ = FollowedSignal(tissue, rule_.follow);
   law->anchors_ = vectors_from(0);
   law->is_remeshed_ = past.size() > numbers;
   if (law->is_remeshed_) {

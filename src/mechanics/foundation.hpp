@@ -8,6 +8,7 @@
 #pragma once
 
 #include "mechanics/active/cell_pattern.hpp"
+#include "mechanics/active/followed_signal.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/derivatives.hpp"
 
@@ -20,7 +21,8 @@ struct FoundationRule {
   double stiffness = 0;  // k, nN/um^3
   double drag = 0;       // c, nN s/um^3; along the normal if one-sided, in both directions
   Resists resists = Resists::all;
-  Program program = {};  // time course of k
+  Program program = {};             // time course of k
+  ShapeActivationRule follow = {};  // signal that scales k
 };
 
 /// Foundation law. Cell strengths scale stiffness and drag. It owns its anchors: after a change of the tissue, new
@@ -47,25 +49,40 @@ class Foundation final : public Law, public LawDerivatives {
                                               std::span<const Vec3> positions,
                                               std::span<const double> past) const override;
 
+  /// Return what FollowedSignal has.
+  [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
+  [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
+  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& tissue,
+                                                          const TissueChange& change,
+                                                          const ChangePositions& positions) const override;
+  [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
+                                                 double time_s) const override;
+
   [[nodiscard]] std::vector<double> program_points_s() const override { return rule_.program.times_s(); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return rule_.program.jumps_s(); }
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
-  [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
+  /// NoGradient where cells follow a signal.
+  [[nodiscard]] const LawDerivatives& derivatives() const override;
   void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
                           const BeginningGradient& gradient) const override;
 
  private:
   struct Support {  // of a node
     std::size_t node = 0;
-    double area = 0;  // um^2, times strengths
-    Vec3 normal;      // out of the tissue
+    double area = 0;                               // um^2, times strengths
+    Vec3 normal;                                   // out of the tissue
+    std::vector<std::pair<CellId, double>> parts;  // of the area, by cell, if they follow a signal
   };
   void measure(const Tissue& tissue);
   void share_areas(const Tissue& tissue, const TissueChange& change, std::span<const Vec3> positions);
   void support(const Tissue& tissue);
   [[nodiscard]] bool is_pressed(const Support& support, const Step& step) const;
-  [[nodiscard]] double spring(const Support& support, double time_s) const {
-    return support.area * rule_.stiffness * rule_.program.at(time_s);
+  using Activity = double (FollowedSignal::*)(std::span<const double>, CellId) const;
+  /// Return the area of a support times the activity of its cells, in this step or the step before.
+  [[nodiscard]] double active_area(const Support& support, std::span<const double> internal,
+                                   Activity activity = &FollowedSignal::at) const;
+  [[nodiscard]] double spring(const Support& support, const Step& step) const {
+    return active_area(support, step.internal) * rule_.stiffness * rule_.program.at(step.end_time_s);
   }
   [[nodiscard]] double damper(const Support& support, const Step& step) const {
     return support.area * rule_.drag / step.rate_s;
@@ -73,10 +90,12 @@ class Foundation final : public Law, public LawDerivatives {
   [[nodiscard]] Vec3 resisted(const Support& support, const Vec3& d) const;
   [[nodiscard]] Vec3 displacement(const Support& support, const Step& step) const;
   [[nodiscard]] Vec3 movement(const Support& support, const Step& step) const;
-  [[nodiscard]] double stored(const Step& step, double activity) const;
+  template <class AreaOf>
+  [[nodiscard]] double stored(const Step& step, double activity, const AreaOf& area_of) const;
 
   FoundationRule rule_;
   CellPattern pattern_;
+  FollowedSignal followed_;
   Vectors anchors_;            // nodes; um
   Vectors normals_;            // nodes of the side; out of the tissue
   std::vector<double> areas_;  // faces of the side; um^2

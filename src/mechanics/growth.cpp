@@ -69,12 +69,18 @@ double Growth::part(double time_s) const {
 }
 
 CellGrowth::CellGrowth(const Tissue& tissue, CellPattern pattern, GrowthRule rule)
-    : rule_(std::move(rule)), pattern_(std::move(pattern)), axes_(axes_of(tissue)) {}
+    : rule_(std::move(rule)), pattern_(std::move(pattern)), followed_(tissue, rule_.follow), axes_(axes_of(tissue)) {}
+
+const LawDerivatives& CellGrowth::derivatives() const {
+  if (followed_.is_used()) refuse_gradient("growth that follows a signal has no gradient; remove follow");
+  return static_derivatives();
+}
 
 double CellGrowth::active_s(CellId cell, std::span<const double> internal, double time_s) const {
   const double from_s = internal.front();
   const auto factor = given(internal).of(cell);
-  return internal[1 + cell.index()] + (factor ? *factor * (time_s - from_s) : rule_.program.integral(from_s, time_s));
+  if (factor) return internal[1 + cell.index()] + *factor * (time_s - from_s);
+  return internal[1 + cell.index()] + followed_.at(followed(internal), cell) * rule_.program.integral(from_s, time_s);
 }
 
 void CellGrowth::grow(std::span<const double> internal, double time_s, std::vector<GrowthTensor>& tensors) const {
@@ -98,7 +104,7 @@ bool CellGrowth::is_growing(std::span<const double> internal, double time_s) con
 }
 
 std::vector<double> CellGrowth::first_internal(const Tissue& /*tissue*/) const {
-  return std::vector<double>(1 + pattern_.cells.size(), 0);
+  return std::vector<double>(1 + pattern_.cells.size() + followed_.size(), 0);
 }
 
 std::vector<double> CellGrowth::next_internal(const Step& step) const {
@@ -106,12 +112,21 @@ std::vector<double> CellGrowth::next_internal(const Step& step) const {
   internal[0] = step.end_time_s;
   for (std::size_t c = 0; c < pattern_.cells.size(); ++c)
     internal[1 + c] = active_s(CellId(c), step.internal, step.end_time_s);
+  followed_.move_on(followed(std::span(internal)));
   return internal;
 }
 
-std::unique_ptr<Law> CellGrowth::after_change(const Tissue& /*tissue*/, const TissueChange& change,
+std::vector<double> CellGrowth::with_signals(std::span<const double> internal, std::span<const CellArray> signals,
+                                             double time_s) const {
+  std::vector<double> result(internal.begin(), internal.end());
+  followed_.follow(signals, time_s, followed(std::span(result)));
+  return result;
+}
+
+std::unique_ptr<Law> CellGrowth::after_change(const Tissue& tissue, const TissueChange& change,
                                               std::span<const Vec3> /*positions*/) const {
   auto law = std::make_unique<CellGrowth>(*this);
+  law->followed_ = FollowedSignal(tissue, rule_.follow);
   follow(change, law->pattern_);
   follow(change, law->axes_);
   return law;
@@ -121,14 +136,15 @@ std::vector<double> CellGrowth::internal_after_change(std::span<const double> in
                                                       const TissueChange& change, const ChangePositions&) const {
   std::vector<double> after(1 + change.origin.size(), 0);
   after[0] = internal.front();
-  const std::vector<double> activities = given(internal).after_change(change);
-  after.insert(after.end(), activities.begin(), activities.end());
+  for (const std::vector<double>& part :
+       {followed_.after_change(followed(internal), change), given(internal).after_change(change)})
+    after.insert(after.end(), part.begin(), part.end());
   return after;
 }
 
 std::optional<double> CellGrowth::activity_of(CellId cell, double time_s, std::span<const double> internal) const {
   if (!pattern_.cells[cell.index()]) return std::nullopt;
-  return given(internal).of(cell).value_or(rule_.program.at(time_s));
+  return given(internal).of(cell).value_or(followed_.at(followed(internal), cell) * rule_.program.at(time_s));
 }
 
 bool cells_grow(const Model& model, std::span<const std::vector<double>> internals, double time_s) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "mechanics/active/cell_pattern.hpp"
+#include "mechanics/active/followed_signal.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/law.hpp"
 
@@ -48,6 +49,7 @@ struct GrowthRule {
   double rate_per_s = 0;
   Vec3 shares;  // of ln V: along, across, and in height; their sum is 1
   Program program = {};
+  ShapeActivationRule follow = {};  // signal that scales the activity
 };
 
 /// Growth that the scenario prescribes: a law without forces that remembers for how long each cell has been active
@@ -63,13 +65,14 @@ class CellGrowth final : public Law {
   void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}
   void add_tangent(const Step&, TangentSink&) const override {}
 
-  [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }
+  /// NoGradient where cells follow a signal.
+  [[nodiscard]] const LawDerivatives& derivatives() const override;
 
   void grow(std::span<const double> internal, double time_s, std::vector<GrowthTensor>& tensors) const override;
   [[nodiscard]] bool is_growing(std::span<const double> internal, double time_s) const override;
 
-  /// Return the time, then the integral of activity of each cell since the last change, s; then overridden activities,
-  /// if any.
+  /// Return the time, then the integral of activity of each cell since the last change, s; then what FollowedSignal
+  /// has; then overridden activities, if any.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
   [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
@@ -86,16 +89,24 @@ class CellGrowth final : public Law {
                                                     std::span<const double> activities) const override {
     return given(internal).put(internal, activities);
   }
+  [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
+                                                 double time_s) const override;
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
 
  private:
   [[nodiscard]] GivenActivities given(std::span<const double> internal) const {
-    return GivenActivities(internal.subspan(std::min(internal.size(), 1 + pattern_.cells.size())));
+    return GivenActivities(internal.subspan(std::min(internal.size(), 1 + pattern_.cells.size() + followed_.size())));
+  }
+  /// Return the part of an internal state that FollowedSignal has.
+  template <class Number>
+  [[nodiscard]] std::span<Number> followed(std::span<Number> internal) const {
+    return internal.subspan(1 + pattern_.cells.size(), followed_.size());
   }
   [[nodiscard]] double active_s(CellId cell, std::span<const double> internal, double time_s) const;
 
   GrowthRule rule_;
   CellPattern pattern_;
+  FollowedSignal followed_;
   ByCell<Mat3> axes_;  // columns: along, across and from base to apex, in the rest shape
 };
 

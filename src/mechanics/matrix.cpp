@@ -91,6 +91,7 @@ Mat2 map_between(const Eigen::Matrix<double, 3, 2>& from, const Eigen::Matrix<do
 MatrixLayer::MatrixLayer(const Tissue& tissue, CellPattern pattern, MatrixRule rule)
     : rule_(std::move(rule)),
       pattern_(std::move(pattern)),
+      followed_(tissue, rule_.follow),
       faces_(bonded_faces(tissue, rule_.side, pattern_)),
       chunks_(face_chunks(tissue, faces_)) {}
 
@@ -135,12 +136,16 @@ MatrixLayer::Corners MatrixLayer::forces_of(std::size_t f, const Step& step, dou
 }
 
 double MatrixLayer::energy(const Step& step) const {
-  return chunks_.sum_over_elements([&](std::size_t f) { return energy_of(f, step, stiffness_of(f, step.end_time_s)); });
+  return chunks_.sum_over_elements([&](std::size_t f) { return energy_of(f, step, stiffness_of(f, step)); });
+}
+
+const LawDerivatives& MatrixLayer::derivatives() const {
+  if (followed_.is_used()) refuse_gradient("a layer that follows a signal has no gradient; remove follow");
+  return *this;
 }
 
 void MatrixLayer::add_forces(const Step& step, std::span<Vec3> forces) const {
-  chunks_.for_elements(
-      [&](std::size_t f) { add(faces_[f], forces_of(f, step, stiffness_of(f, step.end_time_s)), forces); });
+  chunks_.for_elements([&](std::size_t f) { add(faces_[f], forces_of(f, step, stiffness_of(f, step)), forces); });
 }
 
 // Responses to unit programs. A rising program supplies energy; a falling one dissipates what it releases. What the
@@ -149,8 +154,10 @@ EnergyFlow MatrixLayer::energy_flow(const CompletedStep& completed) const {
   std::vector<EnergyFlow> flows_of(faces_.size());
   chunks_.for_elements([&](std::size_t f) {
     const auto [begin, end, motion] = completed;
-    const double from = rule_.program.at(begin.end_time_s), to = rule_.program.at(end.end_time_s);
-    const double unit = rule_.stiffness * pattern_.strengths[faces_[f].cell.index()];
+    const CellId cell = faces_[f].cell;
+    const double from = rule_.program.at(begin.end_time_s) * followed_.before(followed(begin.internal), cell),
+                 to = rule_.program.at(end.end_time_s) * followed_.at(followed(begin.internal), cell);
+    const double unit = rule_.stiffness * pattern_.strengths[cell.index()];
     const double before = energy_of(f, begin, unit), after = energy_of(f, end, unit);
     const double programmed = (to - from) * 0.5 * (before + after);
     flows_of[f] = {.active = std::max(0.0, programmed),
@@ -178,7 +185,7 @@ void MatrixLayer::add_tangent_product(const Step& step, std::span<const Vec3> di
                                       std::span<Vec3> product) const {
   chunks_.for_elements([&](std::size_t f) {
     const Corners x = corners(step.positions, faces_[f]), dx = corners(direction, faces_[f]);
-    const double stiffness = stiffness_of(f, step.end_time_s);
+    const double stiffness = stiffness_of(f, step);
     Corners of_corners = Corners::Zero();
     for (int g = 0; g < 4; ++g) {
       const Tangents A = tangents(x, g), dA = tangents(dx, g);
@@ -193,7 +200,7 @@ void MatrixLayer::add_tangent_product(const Step& step, std::span<const Vec3> di
 // Strains are E_11, E_22 and 2 E_12, with C = 2 E + 1.
 Eigen::Matrix<double, 12, 12> MatrixLayer::tangent_of(std::size_t f, const Step& step) const {
   const Corners x = corners(step.positions, faces_[f]);
-  const double stiffness = stiffness_of(f, step.end_time_s);
+  const double stiffness = stiffness_of(f, step);
   Eigen::Matrix<double, 12, 12> tangent = Eigen::Matrix<double, 12, 12>::Zero();
   for (int g = 0; g < 4; ++g) {
     const Tangents A = tangents(x, g);
@@ -236,13 +243,13 @@ NodeGroups MatrixLayer::node_groups(std::span<const double> /*internal*/) const 
 // A strain of one rounding error over the width of a face.
 double MatrixLayer::rounding(const Step& step, double position_rounding) const {
   double sum = 0;
-  for (std::size_t f = 0; f < faces_.size(); ++f) sum += std::pow(3 * stiffness_of(f, step.end_time_s), 2);
+  for (std::size_t f = 0; f < faces_.size(); ++f) sum += std::pow(3 * stiffness_of(f, step), 2);
   return std::sqrt(sum) * position_rounding;
 }
 
 std::vector<double> MatrixLayer::first_internal(const Tissue& tissue) const {
   const double released = 1 / (rule_.prestretch * rule_.prestretch);
-  std::vector<double> internal(first_number({faces_.size(), 0}));
+  std::vector<double> internal(first_number({faces_.size(), 0}) + followed_.size());
   for (std::size_t f = 0; f < faces_.size(); ++f)
     for (int g = 0; g < 4; ++g) {
       const Tangents A = tangents(corners(tissue.rest_positions, faces_[f]), g);
@@ -257,6 +264,7 @@ std::vector<double> MatrixLayer::first_internal(const Tissue& tissue) const {
 
 std::vector<double> MatrixLayer::next_internal(const Step& step) const {
   std::vector<double> internal(step.internal.begin(), step.internal.end());
+  followed_.move_on(followed(std::span(internal)));
   if (!flows()) return internal;
   chunks_.for_elements([&](std::size_t f) {
     const Corners x = corners(step.positions, faces_[f]);
@@ -267,6 +275,13 @@ std::vector<double> MatrixLayer::next_internal(const Step& step) const {
     }
   });
   return internal;
+}
+
+std::vector<double> MatrixLayer::with_signals(std::span<const double> internal, std::span<const CellArray> signals,
+                                              double time_s) const {
+  std::vector<double> result(internal.begin(), internal.end());
+  followed_.follow(signals, time_s, followed(std::span(result)));
+  return result;
 }
 
 std::unique_ptr<Law> MatrixLayer::after_change(const Tissue& tissue, const TissueChange& change,
@@ -296,6 +311,8 @@ std::vector<double> MatrixLayer::internal_after_change(std::span<const double> i
       carry(&internal[first_number(from)], map, &after[first_number({f, g})]);
     }
   }
+  const std::vector<double> followed_after = followed_.after_change(followed(internal), change);
+  after.insert(after.end(), followed_after.begin(), followed_after.end());
   return after;
 }
 

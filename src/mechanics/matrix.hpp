@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "mechanics/active/cell_pattern.hpp"
+#include "mechanics/active/followed_signal.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/derivatives.hpp"
 #include "mechanics/kernels/element_chunks.hpp"
@@ -25,10 +26,11 @@ namespace plica {
 /// Parameters of a matrix, as in [matrix.NAME] of the scenario.
 struct MatrixRule {
   CellSide side = CellSide::basal;
-  double stiffness = 0;     // mu h, nN/um
-  double prestretch = 1;    // of the reference faces, in every direction
-  double relaxation_s = 0;  // tau; 0: no relaxation
-  Program program = {};     // time course of the stiffness; digestion if it falls
+  double stiffness = 0;             // mu h, nN/um
+  double prestretch = 1;            // of the reference faces, in every direction
+  double relaxation_s = 0;          // tau; 0: no relaxation
+  Program program = {};             // time course of the stiffness; digestion if it falls
+  ShapeActivationRule follow = {};  // signal that scales the stiffness
 };
 
 /// Matrix law. Cell strengths scale the stiffness. Its rest metrics are memory, independent of rest shapes of cells, so
@@ -48,7 +50,7 @@ class MatrixLayer final : public Law, public LawDerivatives {
   [[nodiscard]] double rounding(const Step& step, double position_rounding) const override;
 
   /// Return for each Gauss point: B (11, 22, 12) at the beginning of this step, its unstretched area, and, if it
-  /// relaxes, B at the beginning of the previous step.
+  /// relaxes, B at the beginning of the previous step; then what FollowedSignal has.
   [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
   [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
 
@@ -63,7 +65,11 @@ class MatrixLayer final : public Law, public LawDerivatives {
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return rule_.program.jumps_s(); }
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
 
-  [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
+  [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
+                                                 double time_s) const override;
+
+  /// NoGradient where cells follow a signal.
+  [[nodiscard]] const LawDerivatives& derivatives() const override;
   void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
                           const BeginningGradient& gradient) const override;
   void add_internal_gradient(const Step& step, std::span<const double> next, std::span<const double> adjoint,
@@ -90,8 +96,15 @@ class MatrixLayer final : public Law, public LawDerivatives {
   [[nodiscard]] std::size_t first_number(const Place& at) const {
     return (flows() ? 7 : 4) * (4 * at.face + static_cast<std::size_t>(at.point));
   }
-  [[nodiscard]] double stiffness_of(std::size_t face, double time_s) const {
-    return rule_.stiffness * pattern_.strengths[faces_[face].cell.index()] * rule_.program.at(time_s);
+  [[nodiscard]] double stiffness_of(std::size_t face, const Step& step) const {
+    const CellId cell = faces_[face].cell;
+    return rule_.stiffness * pattern_.strengths[cell.index()] * rule_.program.at(step.end_time_s) *
+           followed_.at(followed(step.internal), cell);
+  }
+  /// Return the part of an internal state that FollowedSignal has.
+  template <class Number>
+  [[nodiscard]] std::span<Number> followed(std::span<Number> internal) const {
+    return internal.last(followed_.size());
   }
   /// Return a Gauss point with tangents A at the end of a step; `stiffness`: mu h.
   [[nodiscard]] MembranePoint point(const Place& at, const Tangents& A, const Step& step, double stiffness) const;
@@ -109,6 +122,7 @@ class MatrixLayer final : public Law, public LawDerivatives {
 
   MatrixRule rule_;
   CellPattern pattern_;
+  FollowedSignal followed_;
   std::vector<Facet> faces_;
   ElementChunks chunks_;
 };

@@ -31,7 +31,7 @@ void MatrixLayer::add_force_gradient(const Step& step, std::span<const Vec3> adj
     const Corners x = corners(step.positions, faces_[f]), v = corners(adjoint, faces_[f]);
     for (int g = 0; g < 4; ++g) {
       const Tangents A = tangents(x, g);
-      const MembranePoint of = point({f, g}, A, step, stiffness_of(f, step.end_time_s));
+      const MembranePoint of = point({f, g}, A, step, stiffness_of(f, step));
       const Mat2 E = symmetric_part(A.transpose() * tangents(v, g));
       add_gradient_of_before({f, g}, -of.stress_gradient(E), step.ahead, gradient.internal);
       const std::size_t area = first_number({f, g}) + 3;
@@ -70,7 +70,7 @@ void MatrixLayer::add_strength_gradient(const Step& step, std::span<const Vec3> 
                                         std::span<double> of_cells) const {
   for (std::size_t f = 0; f < faces_.size(); ++f)
     of_cells[faces_[f].cell.index()] +=
-        forces_of(f, step, stiffness_of(f, step.end_time_s)).cwiseProduct(corners(adjoint, faces_[f])).sum();
+        forces_of(f, step, stiffness_of(f, step)).cwiseProduct(corners(adjoint, faces_[f])).sum();
 }
 
 std::unique_ptr<Law> MatrixLayer::with_strengths(std::span<const double> factors) const {

@@ -192,7 +192,7 @@ struct TriggerInput : ActivationInput {
   std::optional<double> below, above;  // one of them
 };
 
-/// Shape-dependent tension: a factor that follows a shape or signal.
+/// A factor on what a table does that follows a shape (of cortices only) or a signal.
 struct FollowInput : ActivationInput {
   std::optional<double> from, to;
 };
@@ -287,6 +287,7 @@ struct GrowthInput : ActingInput {
   std::optional<double> in_plane;                 // empty: isotropic
   std::string axis;                               // along | across; empty: none
   std::optional<double> axis_ratio;
+  FollowInput follow;  // signal
 };
 
 /// Exchange of neighbours: short lateral faces turn by a quarter.
@@ -297,10 +298,10 @@ struct ExchangeInput {
   std::string region = "all";
 };
 
-/// Cells that leave the sheet once they are small and have three walls.
+/// Cells that leave the sheet once they are small, by each bound that is given, and have three walls.
 struct ExtrusionInput {
   std::string region;
-  std::optional<double> apical_area_below_um2;
+  std::optional<double> apical_area_below_um2, basal_area_below_um2;
 };
 
 struct TimeInput {
@@ -371,6 +372,7 @@ struct FoundationInput : ActingInput {
   double stiffness_nN_per_um3 = 0;
   double drag_Pa_s_per_um = 0;
   std::string resists = "all";  // all | normal | one-sided
+  FollowInput follow;           // signal
 };
 
 /// Membrane of extracellular matrix bonded to faces; the program scales its stiffness.
@@ -379,6 +381,7 @@ struct MatrixInput : ActingInput {
   std::optional<double> young_modulus_Pa, thickness_um;
   double prestretch = 1;
   std::optional<double> relaxation_s;
+  FollowInput follow;  // signal
 };
 
 /// Laser ablation or optogenetic inhibition: loss of cortical and contractile strength.

@@ -104,7 +104,7 @@ RunControls make_controls(const Scenario& scenario) {
   if (const ExchangeInput& input = scenario.exchange; input.below_um)
     controls.exchange = {input.region, *input.below_um, *input.new_length_um, input.again_after_s};
   for (const auto& [name, input] : scenario.extrusions)
-    controls.extrusions.push_back({input.region, *input.apical_area_below_um2});
+    controls.extrusions.push_back({input.region, input.apical_area_below_um2, input.basal_area_below_um2});
   return controls;
 }
 

@@ -91,10 +91,14 @@ Exchanges::Turned turned_now(const Sheet& sheet, const WallTurn& turn, const Sta
 CellSet leaving_cells(const Model& model, const State& state, std::span<const ExtrusionRule> rules) {
   CellSet leaving(model.tissue.cells.size(), false);
   if (rules.empty()) return leaving;
-  const std::vector<double> areas = face_areas(model.tissue, CellSide::apical, state.positions);
+  const std::vector<double> apical = face_areas(model.tissue, CellSide::apical, state.positions),
+                            basal = face_areas(model.tissue, CellSide::basal, state.positions);
+  const auto is_small = [](double area, const std::optional<double>& below) { return !below || area < *below; };
   for (const ExtrusionRule& rule : rules)
     for (std::size_t c = 0; c < leaving.size(); ++c)
-      if (model.tissue.regions.at(rule.region)[c] && areas[c] < rule.below_um2) leaving[c] = true;
+      if (model.tissue.regions.at(rule.region)[c] && is_small(apical[c], rule.apical_below_um2) &&
+          is_small(basal[c], rule.basal_below_um2))
+        leaving[c] = true;
   return leaving;
 }
 

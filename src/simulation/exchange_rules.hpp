@@ -1,6 +1,7 @@
 // Exchange and extrusion rules of a scenario: which walls may turn after a step, which cells leave.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,10 +20,10 @@ struct ExchangeRule {
 
 struct ExtrusionRule {
   std::string region;
-  double below_um2 = 0;  // apical area of a cell that leaves
+  std::optional<double> apical_below_um2, basal_below_um2;  // areas of a cell that leaves; empty: any
 };
 
-/// Cells that leave: in the region of a rule, with a smaller apical area than it says.
+/// Cells that leave: in the region of a rule, with smaller faces than it says.
 CellSet leaving_cells(const Model& model, const State& state, std::span<const ExtrusionRule> rules);
 
 /// Walls due at the time of the state, the shortest first: shorter than the rule says and shrinking, between cells of

@@ -36,7 +36,7 @@ TEST(ExchangeKeys, SayWhatWouldBeRight) {
       {soft_sheet + "[extrusion.a]\nregion = \"all\"\napical_area_below_um2 = 5",
        "9: extrusion.a: cells lose neighbours only by exchange; set exchange.below_um, for example to 0.35"},
       {exchanging + "[extrusion.a]\nregion = \"all\"",
-       "11: extrusion.a.apical_area_below_um2: is missing; set apical_area_below_um2 to a number > 0"},
+       "11: extrusion.a: has no effect; set apical_area_below_um2 or basal_area_below_um2, for example to 5"},
       {lateral_cortex + "tension_mN_per_m = 1\nnoise = { spread = 0.5 }",
        "5: cortex.a.noise.correlation_s: is missing; set it to the time in which tensions change, such as 120"},
       {lateral_cortex + "tension_mN_per_m = 1\nnoise = { correlation_s = 5 }",

@@ -113,6 +113,23 @@ TEST(ExtrusionOfCells, TakeTheirSignalsWithThemAndNoMore) {
   EXPECT_GT(watch.lost, 0);
 }
 
+// Truncated pyramids, of 9 um^2 at the apex and 36 at the base on average.
+TEST(ExtrusionOfCells, AreSmallByEachBoundThatIsGiven) {
+  const Simulation run(scenario_of(extension));
+  State state = run.state();
+  for (Vec3& x : state.positions)
+    if (x.z() > 0) x.head<2>() *= 0.5;
+  const auto leaving = [&](std::optional<double> apical, std::optional<double> basal) {
+    return std::ranges::count(leaving_cells(run.model(), state, std::array{ExtrusionRule{"all", apical, basal}}), true);
+  };
+  EXPECT_EQ(leaving(20, {}), 36);
+  EXPECT_EQ(leaving({}, 80), 36);
+  EXPECT_EQ(leaving(20, 80), 36);
+  EXPECT_EQ(leaving({}, 9), 0);
+  EXPECT_EQ(leaving(20, 9), 0);
+  EXPECT_EQ(leaving(2, 80), 0);
+}
+
 TEST(ExtrusionOfCells, EveryOneThatIsToldLeaves) {
   Simulation simulation(scenario_of(sheet_that_cells_leave("5")));
   EXPECT_EQ(simulation.run(), RunStatus::end_time) << simulation.failure();

@@ -31,6 +31,7 @@ class Draw {
                                                                     {0.05, &Draw::hold}})
       if (is(chance)) (this->*table)();
     cortices();
+    follow();
     add("[time]\nend_s = 60\nfirst_step_s = 0.5\nmax_step_s = 3\ntolerance_um = 0.3\n");
     if (is(0.15)) add("linear_solver = \"{}\"\n", one_of({"direct", "cholesky", "multigrid"}));
     return text_ + "[stop]\nat_equilibrium = false\n";
@@ -139,6 +140,14 @@ class Draw {
     if (is(0.6))
       add("[foundation.one]\nregion = \"{}\"\nstiffness_nN_per_um3 = 0.005\nresists = \"{}\"\n", region(),
           one_of({"all", "normal", "one-sided"}));
+  }
+
+  // Half of the scenarios with a signal, without a further random number: others stay as they are.
+  void follow() {
+    const auto has = [&](const std::string& table) { return text_.find("[" + table + "]") != std::string::npos; };
+    if (!has("signal.u") || text_.size() % 2 == 0) return;
+    for (const std::string table : {"growth.one", "matrix.one", "foundation.one"})
+      if (has(table)) add("[{}.follow]\nsignal = \"u\"\nfrom = 0\nto = 1\n", table);
   }
 
   void contact() {

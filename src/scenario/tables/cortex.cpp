@@ -1,9 +1,6 @@
 // [cortex.NAME]: a thin active, elastic layer on faces of cells.
 #include "mechanics/active/cortex.hpp"
 
-#include <fmt/ranges.h>
-
-#include "scenario/suggest.hpp"
 #include "scenario/tables/table.hpp"
 
 namespace plica {
@@ -35,47 +32,6 @@ void check_effect(const std::string& table, const CortexInput& cortex, Input& in
         "stiffness_mN_per_m");
 }
 
-// Checks that the stress of cells is known, if they read it.
-bool check_stress(const std::string& part, const ActivationInput& activation, const Scenario& scenario, Input& input) {
-  if (activation.measure != "stress_Pa") return true;
-  if (model_of(scenario.elasticity) == ElasticModel::shape_memory) {
-    if (input.sound("elasticity.model"))
-      input.report(part + ".measure", "model \"shape-memory\" has no stress",
-                   "set elasticity.model to \"corotational\", or measure to \"apical_stretch\"");
-    return false;
-  }
-  for (const auto& [name, cortex] : scenario.cortices)
-    if (cortex.faces != "lateral" && !cortex.direction.axis.empty() &&
-        (cortex.stiffness_mN_per_m > 0 || cortex.crowding_mN_per_m > 0)) {
-      input.report(part + ".measure", fmt::format("stress_Pa has no passive fibres, such as cortex.{}", name),
-                   fmt::format("put stiffness and crowding of cortex.{} into a table without direction", name));
-      return false;
-    }
-  return true;
-}
-
-// Checks what a cell reads; false: nothing, or an error.
-bool check_activation(const std::string& part, const ActivationInput& activation, bool has_bounds,
-                      const Scenario& scenario, Input& input) {
-  if (!input.sound(part + ".measure") || !input.sound(part + ".signal")) return false;
-  const auto report = [&](const std::string& key, const std::string& problem, const std::string& remedy) {
-    input.report(part + key, problem, remedy);
-    return false;
-  };
-  const bool is_of_neighbours = activation.of != ActivationInput().of;
-  if (!activation.is_used() && (has_bounds || is_of_neighbours))
-    return report(
-        ".measure", "is missing",
-        fmt::format("set measure to one of: {}; or set signal", fmt::join(words_of(words::cell_measures), " | ")));
-  if (!activation.measure.empty() && !activation.signal.empty())
-    return report(".signal", "conflicts with `measure`, which is also set", "remove one of them");
-  if (!check_stress(part, activation, scenario, input)) return false;
-  if (activation.signal.empty() || scenario.signals.contains(activation.signal)) return activation.is_used();
-  const std::string problem = fmt::format("no signal \"{}\"", activation.signal);
-  if (scenario.signals.empty()) return report(".signal", problem, fmt::format("add [signal.{}]", activation.signal));
-  return report(".signal", problem, did_you_mean(activation.signal, keys_of(scenario.signals)));
-}
-
 void check_shape_activation(const std::string& table, const CortexInput& cortex, const Scenario& scenario,
                             Input& input) {
   const TriggerInput& trigger = cortex.trigger;
@@ -85,17 +41,14 @@ void check_shape_activation(const std::string& table, const CortexInput& cortex,
   const auto report = [&](const std::string& key, const std::string& problem, const std::string& remedy) {
     if (input.sound(table + key)) input.report(table + key, problem, remedy);
   };
-  if (check_activation(table + ".trigger", trigger, trigger.below || trigger.above, scenario, input)) {
+  if (check_reading(table + ".trigger", trigger, trigger.below || trigger.above, scenario, input, true)) {
     if (trigger.below.has_value() == trigger.above.has_value())
       report(trigger.below ? ".trigger.above" : ".trigger.below", trigger.below ? "conflicts with below" : "is missing",
              "set either below or above");
     if (cortex.delay.speed_um_per_s)
       report(".trigger", "conflicts with `delay`, which activates cells at prescribed times", "remove one of them");
   }
-  if (!check_activation(table + ".follow", follow, follow.from || follow.to, scenario, input)) return;
-  if (!follow.from) report(".follow.from", "is missing", "set `from` to the value at which the factor is 0");
-  if (!follow.to) report(".follow.to", "is missing", "set `to` to the value at which the factor is 1");
-  if (follow.from && follow.from == follow.to) report(".follow.to", "equals `from`", "set `to` to a different value");
+  if (!check_follow(table, follow, scenario, input, true)) return;
   if (trigger.is_used()) report(".follow", "conflicts with `trigger`", "remove one of them");
   if (cortex.tension_mN_per_m == 0 && input.place(table + ".tension_mN_per_m") == nullptr)
     report(".follow", "is not used without tension_mN_per_m", "remove it, or set tension_mN_per_m");
@@ -187,27 +140,11 @@ void take_fibres(const DirectionInput& input, const Tissue& tissue, CortexRule& 
 }
 
 ShapeActivationRule make_shape_activation(const CortexInput& input, const Scenario& scenario) {
-  ShapeActivationRule rule;
-  const auto read = [&](const ActivationInput& activation) {
-    rule.measure = meaning_of(words::cell_measures, activation.measure, rule.measure);
-    rule.of_neighbours = meaning_of(words::read_cells, activation.of);
-    const auto signal = scenario.signals.find(activation.signal);
-    if (signal != scenario.signals.end() || rule.measure == ShapeMeasure::passive_stress)
-      rule.signal = static_cast<std::size_t>(std::distance(scenario.signals.begin(), signal));
-  };
-  if (input.trigger.is_used()) {
-    const std::optional<double>& below = input.trigger.below;
-    rule.kind = below ? ShapeActivationRule::Kind::starts_below : ShapeActivationRule::Kind::starts_above;
-    rule.threshold = below ? *below : *input.trigger.above;
-    read(input.trigger);
-  } else if (input.follow.is_used()) {
-    rule.kind = ShapeActivationRule::Kind::follows;
-    rule.from = *input.follow.from;
-    rule.to = *input.follow.to;
-    read(input.follow);
-  }
-  if (rule.measure == ShapeMeasure::passive_stress)
-    for (double* value : {&rule.threshold, &rule.from, &rule.to}) *value *= units::pascal;
+  if (!input.trigger.is_used()) return make_follow(input.follow, scenario);
+  ShapeActivationRule rule = make_reading(input.trigger, scenario);
+  const std::optional<double>& below = input.trigger.below;
+  rule.kind = below ? ShapeActivationRule::Kind::starts_below : ShapeActivationRule::Kind::starts_above;
+  rule.threshold = reading_unit(rule) * (below ? *below : *input.trigger.above);
   return rule;
 }
 
@@ -279,26 +216,23 @@ ScenarioTable cortex_table() {
   add_program(info.rows, row, &X::program);
   add_program(info.rows, row, &X::stiffness_program,
               {"stiffness_program.time_s", "stiffness_program.time_min", "stiffness_program.activity"});
+  info.rows.insert(info.rows.end(),
+                   {
+                       row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::cell_measures),
+                           "Measure that starts the time courses."),
+                       row("trigger.signal", &X::trigger, &TriggerInput::signal, anything,
+                           "Instead of `measure`: name of a `[signal.NAME]`."),
+                       row("trigger.of", &X::trigger, &TriggerInput::of, one_of(words::read_cells),
+                           "Whose: its own, or the mean of cells that share a lateral face with it."),
+                       row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
+                       row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
+                       row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::cell_measures),
+                           "Measure that scales the active tension."),
+                   });
+  add_follow(info.rows, row);
   info.rows.insert(
       info.rows.end(),
       {
-          row("trigger.measure", &X::trigger, &TriggerInput::measure, one_of(words::cell_measures),
-              "Measure that starts the time courses."),
-          row("trigger.signal", &X::trigger, &TriggerInput::signal, anything,
-              "Instead of `measure`: name of a `[signal.NAME]`."),
-          row("trigger.of", &X::trigger, &TriggerInput::of, one_of(words::read_cells),
-              "Whose: its own, or the mean of cells that share a lateral face with it."),
-          row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
-          row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
-          row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::cell_measures),
-              "Measure that scales the active tension."),
-          row("follow.signal", &X::follow, &FollowInput::signal, anything,
-              "Instead of `measure`: name of a `[signal.NAME]`."),
-          row("follow.of", &X::follow, &FollowInput::of, one_of(words::read_cells), "Whose, as in `trigger.of`."),
-          row("follow.from", &X::follow, &FollowInput::from, not_negative,
-              "Value at which, and before which, the factor is 0."),
-          row("follow.to", &X::follow, &FollowInput::to, not_negative,
-              "Value at which, and beyond which, the factor is 1."),
           row("direction.axis", &X::direction, &DirectionInput::axis, one_of(words::fibre_axes),
               "Axis of fibres (apical, basal), or of planar polarity by the angle a to the normal (lateral); fibres by "
               "cell, as far as it is elongated: its `long-axis`, or largest `stretch`."),

@@ -13,7 +13,8 @@ constexpr auto resistances =
                                                   {"normal", FoundationRule::Resists::normal},
                                                   {"one-sided", FoundationRule::Resists::one_sided}});
 
-void check(const std::string& table, F& input, const Scenario&, Input& errors) {
+void check(const std::string& table, F& input, const Scenario& scenario, Input& errors) {
+  const bool follows = check_follow(table, input.follow, scenario, errors);
   for (const char* key : {"", ".stiffness_nN_per_um3", ".drag_Pa_s_per_um"})
     if (!errors.sound(table + key)) return;
   const auto is_missing = [&](double value, const std::string& key) {
@@ -25,6 +26,9 @@ void check(const std::string& table, F& input, const Scenario&, Input& errors) {
     if (!input.program.activity.empty())
       errors.report(table + ".program", "is not used without stiffness_nN_per_um3",
                     "remove it, or set stiffness_nN_per_um3");
+    if (follows)
+      errors.report(table + ".follow", "is not used without stiffness_nN_per_um3",
+                    "remove it, or set stiffness_nN_per_um3");
     if (input.resists == "one-sided")
       errors.report(table + ".resists", "\"one-sided\" is not used without stiffness_nN_per_um3",
                     "set resists to \"all\" or \"normal\", or set stiffness_nN_per_um3");
@@ -34,9 +38,12 @@ void check(const std::string& table, F& input, const Scenario&, Input& errors) {
 void build(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.foundations) {
     if (input.stiffness_nN_per_um3 == 0 && input.drag_Pa_s_per_um == 0) continue;
-    FoundationRule rule{meaning_of(words::surfaces, input.faces), input.stiffness_nN_per_um3,
-                        input.drag_Pa_s_per_um * units::pascal_second_per_um, meaning_of(resistances, input.resists),
-                        make_program(input.program)};
+    FoundationRule rule{meaning_of(words::surfaces, input.faces),
+                        input.stiffness_nN_per_um3,
+                        input.drag_Pa_s_per_um * units::pascal_second_per_um,
+                        meaning_of(resistances, input.resists),
+                        make_program(input.program),
+                        make_follow(input.follow, scenario)};
     model.laws.push_back(std::make_unique<Foundation>(model.tissue, make_pattern(input, origin), std::move(rule)));
     model.laws.back()->set_label("foundation." + name);
   }
@@ -63,6 +70,7 @@ ScenarioTable foundation_table() {
           "it and only into the foundation (faces slide and lift off; drag along the normal remains)."),
   };
   add_program(info.rows, row, &F::program);
+  add_follow(info.rows, row);
   add_strengths(info.rows, acting(row));
   info.build = build;
   list_acting(info, &Scenario::foundations, describe, check);

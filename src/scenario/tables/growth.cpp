@@ -33,8 +33,9 @@ void check_size(const std::string& table, const G& growth, Input& input) {
                  "set two times or more, with an activity above 0");
 }
 
-void check(const std::string& table, G& growth, const Scenario& /*scenario*/, Input& input) {
+void check(const std::string& table, G& growth, const Scenario& scenario, Input& input) {
   check_size(table, growth, input);
+  check_follow(table, growth.follow, scenario, input);
   if (input.sound(table + ".axis") && input.sound(table + ".axis_ratio")) {
     if (growth.axis_ratio && growth.axis.empty())
       input.report(table + ".axis", "is missing", "set axis to \"along\" or \"across\"");
@@ -69,7 +70,9 @@ GrowthRule rule_of(const G& input) {
 
 void build(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.growths) {
-    model.laws.push_back(std::make_unique<CellGrowth>(model.tissue, make_pattern(input, origin), rule_of(input)));
+    GrowthRule rule = rule_of(input);
+    rule.follow = make_follow(input.follow, scenario);
+    model.laws.push_back(std::make_unique<CellGrowth>(model.tissue, make_pattern(input, origin), std::move(rule)));
     model.laws.back()->set_label("growth." + name);
   }
 }
@@ -97,6 +100,7 @@ ScenarioTable growth_table() {
           "Growth (logarithm of the stretch) along `axis` / growth across it, in the plane; default 1."),
   };
   add_program(info.rows, row, &G::program);
+  add_follow(info.rows, row);
   add_strengths(info.rows, acting(row));
   info.build = build;
   list_acting(info, &Scenario::growths, nullptr, check);

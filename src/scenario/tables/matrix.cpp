@@ -11,11 +11,19 @@ using M = MatrixInput;
 void build(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.matrices) {
     const double shear_modulus = *input.young_modulus_Pa * units::pascal / 3;  // incompressible
-    MatrixRule rule{meaning_of(words::surfaces, input.faces), shear_modulus * *input.thickness_um, input.prestretch,
-                    input.relaxation_s.value_or(0), make_program(input.program)};
+    MatrixRule rule{meaning_of(words::surfaces, input.faces),
+                    shear_modulus * *input.thickness_um,
+                    input.prestretch,
+                    input.relaxation_s.value_or(0),
+                    make_program(input.program),
+                    make_follow(input.follow, scenario)};
     model.laws.push_back(std::make_unique<MatrixLayer>(model.tissue, make_pattern(input, origin), std::move(rule)));
     model.laws.back()->set_label("matrix." + name);
   }
+}
+
+void check(const std::string& table, M& input, const Scenario& scenario, Input& errors) {
+  check_follow(table, input.follow, scenario, errors);
 }
 
 void describe(const M&, const Scenario&, Acting& acting) { acting.faces_key = "faces"; }
@@ -45,9 +53,10 @@ ScenarioTable matrix_table() {
           {.instead_of = "relaxation_s", .scale = 60}),
   };
   add_program(info.rows, row, &M::program);
+  add_follow(info.rows, row);
   add_strengths(info.rows, acting(row));
   info.build = build;
-  list_acting(info, &Scenario::matrices, describe);
+  list_acting(info, &Scenario::matrices, describe, check);
   return info;
 }
 

@@ -16,6 +16,7 @@
 #include "core/errors.hpp"
 #include "core/names.hpp"
 #include "core/units.hpp"
+#include "mechanics/active/shape_activation.hpp"
 #include "mechanics/model.hpp"
 #include "scenario/acting.hpp"
 #include "scenario/check_tissue.hpp"
@@ -102,6 +103,19 @@ void add_program(std::vector<KeyRow>& rows, const KeyRows<Table>& table, Program
   rows.push_back(table(keys[2], program, &ProgramInput::activity, not_negative, "Activity at these times."));
 }
 
+/// Adds the keys of an activity that follows a signal.
+template <class Table>
+void add_follow(std::vector<KeyRow>& rows, const KeyRows<Table>& table) {
+  rows.push_back(table("follow.signal", &Table::follow, &FollowInput::signal, anything,
+                       "Name of a `[signal.NAME]`; `[cortex.NAME]`: instead of `measure`."));
+  rows.push_back(
+      table("follow.of", &Table::follow, &FollowInput::of, one_of(words::read_cells), "Whose, as in `trigger.of`."));
+  rows.push_back(table("follow.from", &Table::follow, &FollowInput::from, not_negative,
+                       "Value at which, and before which, the factor is 0."));
+  rows.push_back(table("follow.to", &Table::follow, &FollowInput::to, not_negative,
+                       "Value at which, and beyond which, the factor is 1."));
+}
+
 /// Adds the keys of amplitude factors (profile and variation) of tables that act.
 void add_strengths(std::vector<KeyRow>& rows, const KeyRows<ActingInput>& table);
 
@@ -137,6 +151,23 @@ std::int64_t built_cell_count(const EmbryoInput& embryo);
 /// Checks a time course of `table` ("contraction.NAME").
 void check_program(const std::string& table, const ProgramInput& program, Input& input,
                    const std::string& name = "program");
+
+/// Checks what cells read by the keys of `part` ("cortex.NAME.trigger"), a shape only if it may be one; false: nothing,
+/// or an error. `has_bounds`: other keys of the part need it.
+bool check_reading(const std::string& part, const ActivationInput& reading, bool has_bounds, const Scenario& scenario,
+                   Input& input, bool may_be_shape);
+/// Checks `follow` of a table likewise, with its bounds.
+bool check_follow(const std::string& table, const FollowInput& follow, const Scenario& scenario, Input& input,
+                  bool may_be_shape = false);
+
+/// Make the rule of what cells read, without bounds.
+ShapeActivationRule make_reading(const ActivationInput& input, const Scenario& scenario);
+/// Unit in which a scenario gives the bounds of what cells read.
+inline double reading_unit(const ShapeActivationRule& rule) {
+  return rule.measure == ShapeMeasure::passive_stress ? units::pascal : 1;
+}
+/// Make the rule of an activity that follows it.
+ShapeActivationRule make_follow(const FollowInput& input, const Scenario& scenario);
 
 /// Checks program, profile, delay and pulse of `table`: keys that others require or do not use. Sets default axis, wave
 /// origin and phase.
