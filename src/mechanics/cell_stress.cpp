@@ -3,8 +3,6 @@
 #include <algorithm>
 
 #include "mechanics/active/cortex.hpp"
-#include "mechanics/elasticity/corotational.hpp"
-#include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/energy.hpp"
 
 namespace plica {
@@ -27,12 +25,8 @@ bool reads_stress(const Model& model) {
 std::vector<double> passive_stresses(const Model& model, const State& state) {
   const Vectors no_velocity(state.positions.size(), Vec3::Zero());
   std::vector<Mat3> integrals(model.tissue.cells.size(), Mat3::Zero());
-  for_laws(model, motionless(state, no_velocity), [&](const Law& law, const Step& step) {
-    if (law.cortex() != nullptr) law.cortex()->add_stress_integrals(step, integrals);
-    if (const auto* soft = dynamic_cast<const NeoHookean*>(&law)) soft->add_stress_integrals(step, integrals);
-    if (const auto* linear = dynamic_cast<const Corotational*>(&law))
-      linear->add_stress_integrals(model.tissue, step, integrals);
-  });
+  for_laws(model, motionless(state, no_velocity),
+           [&](const Law& law, const Step& step) { law.add_stress_integrals(step, integrals); });
   std::vector<double> stresses = model.volumes.volumes(state.positions);
   for (std::size_t c = 0; c < stresses.size(); ++c) {
     const Vec3 n = axis_to_apex(model.tissue.cells[c], state.positions);

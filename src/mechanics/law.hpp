@@ -125,6 +125,9 @@ class Law : public LawMemory, public LawChange, public LawActivity {
     return std::nullopt;
   }
 
+  /// Add the integral of its passive Cauchy stress over each cell, nN um: neither of viscosity nor of what is active.
+  virtual void add_stress_integrals(const Step& /*step*/, std::span<Mat3> /*of_cells*/) const {}
+
   [[nodiscard]] std::unique_ptr<Law> grown(const Tissue& tissue, std::span<const ElementId> elements,
                                            std::span<const GrowthTensor> /*tensors*/) const override {
     std::unique_ptr<Law> law = clone();

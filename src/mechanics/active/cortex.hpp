@@ -80,9 +80,8 @@ class Cortex final : public BatchLaw<Cortex, 4>, public LawDerivatives {
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
                                                   std::span<const double> internal) const override;
   [[nodiscard]] bool accepts(std::span<const double> internal, const Tissue& tissue) const override;
-  /// Add the integral of its Cauchy stress over each cell, nN um (mechanics/cell_stress.hpp), by elastic stiffness and
-  /// crowding of faces without fibres.
-  void add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const;
+  /// By elastic stiffness and crowding of faces without fibres.
+  void add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const override;
   /// Override the activity of the tension; stiffness keeps its program.
   [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
                                                     std::span<const double> activities) const override;

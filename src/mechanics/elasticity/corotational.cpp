@@ -137,7 +137,7 @@ std::unique_ptr<Law> Corotational::with_strengths(std::span<const double> factor
 }
 
 // The integral over an element is -sum_i f_i x_i^T with the forces on its nodes when it is apart from all others.
-void Corotational::add_stress_integrals(const Tissue& tissue, const Step& step, std::span<Mat3> of_cells) const {
+void Corotational::add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const {
   std::vector<CorotationalBatch> batches = batches_;
   for (std::size_t place = 0; place < places(); ++place)
     for (std::size_t i = 0; i < 8; ++i)
@@ -154,7 +154,7 @@ void Corotational::add_stress_integrals(const Tissue& tissue, const Step& step, 
     kernels().add_forces(apart, first, last, components(std::span<Vec3>(forces)));
   });
   for (std::size_t k = 0; k < forces.size(); ++k)
-    of_cells[tissue.element_cell[k / 8].index()] -= forces[k] * positions[k].transpose();
+    of_cells[element_cell_[k / 8].index()] -= forces[k] * positions[k].transpose();
 }
 
 std::unique_ptr<Law> Corotational::after_change(const Tissue& tissue, const TissueChange& change,

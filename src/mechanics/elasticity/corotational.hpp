@@ -42,8 +42,7 @@ class Corotational final : public BatchLaw<Corotational, 8>, public LawDerivativ
                              std::span<double> of_cells) const override;
   [[nodiscard]] std::unique_ptr<Law> with_strengths(std::span<const double> factors) const override;
 
-  /// Add the integral of its Cauchy stress over each cell, nN um, without viscosity.
-  void add_stress_integrals(const Tissue& tissue, const Step& step, std::span<Mat3> of_cells) const;
+  void add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const override;
 
   [[nodiscard]] CorotationalArrays kernel_arrays(const Step& step) const;
 

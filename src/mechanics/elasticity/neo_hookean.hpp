@@ -56,8 +56,7 @@ class NeoHookean final : public BatchLaw<NeoHookean, 8>, public LawDerivatives {
   [[nodiscard]] std::optional<Mat3> elastic_stretch(std::span<const double> internal, std::span<const Vec3> positions,
                                                     std::span<const ElementId> elements) const override;
 
-  /// Add the integral of its Cauchy stress over each cell, nN um.
-  void add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const;
+  void add_stress_integrals(const Step& step, std::span<Mat3> of_cells) const override;
 
   /// Return C_p of a Gauss point in an internal state.
   [[nodiscard]] Mat3 flowed(std::span<const double> internal, ElementId element, int gauss_point) const;
