@@ -138,7 +138,7 @@ TEST(FollowedSignal, RunsGoOnToTheSameBits) {
           "[foundation.below]\nregion = \"all\"\nstiffness_nN_per_um3 = 0.01\nresists = \"normal\"\n" + by_u +
           "[division.some]\nregion = \"all\"\nwhen = \"elongation_above\"\nthreshold = 1.6\n"
           "growth_s = 10\nplane = \"longest-axis\"\n",
-      {"time.end_min=1"});
+      {"time.end_min=0.2"});
   Simulation whole(scenario);
   std::vector<RunMemory> memories;
   while (whole.step()) {
