@@ -227,7 +227,7 @@ ScenarioTable cortex_table() {
                        row("trigger.below", &X::trigger, &TriggerInput::below, positive, "Start below this value."),
                        row("trigger.above", &X::trigger, &TriggerInput::above, positive, "Start above this value."),
                        row("follow.measure", &X::follow, &FollowInput::measure, one_of(words::cell_measures),
-                           "Measure that scales the active tension."),
+                           "`[cortex.NAME]` only: measure that scales the active tension."),
                    });
   add_follow(info.rows, row);
   info.rows.insert(
