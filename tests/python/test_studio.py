@@ -374,7 +374,8 @@ def test_a_mesh_is_looked_at_and_used(session, tmp_path):
     assert session.draft.table is before, "nothing is used before it is accepted"
     assert session.frame_messages({"run": -1, "slot": 0, "field": "region", "known": -1})
     assert looked_at(session, "sheet.off", cell_height_um="12", scale="2")["problem"] == ""
-    session.order("use", {})
+    session.order("look_at", {"source": "sheet.off", "options": {"cell_height_um": "12", "scale": "2"}})
+    session.order("use", {})  # before that has been read again
     embryo = session.draft.table["embryo"]
     assert (embryo["shape"], embryo["cell_height_um"], embryo["scale"]) == ("surface", 12, [2, 2, 2])
     wait(lambda: session.rest.cells == 4)

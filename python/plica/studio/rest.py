@@ -61,6 +61,7 @@ class Rest:
                     continue
                 self._built, self.advice, self.problem, self.version = built, advice, problem, version
                 self.cells = 0 if problem else len(sim.pressures)
+                self._wanted.notify_all()
             self._told()
 
     def frame_message(self, want: Table) -> list[bytes]:

@@ -22,6 +22,7 @@ from .draft import Draft, Table
 from .messages import problem_of
 from .rest import Rest
 
+READING_S = 20.0  # that "use" waits for a reading
 SIDES = ["", "outside", "inside", "+z", "-z", "+y", "-y", "+x", "-x"]
 
 
@@ -214,7 +215,13 @@ class Candidate(Rest):
                     "asked": self.asked}
 
     def draft(self) -> Draft:
-        """Return the tissue as a scenario. Cells made of an image get a file of their own, beside the image."""
+        """Return the tissue as a scenario. Cells made of an image get a file of their own, beside the image.
+
+        An answer given just before may still be at work: its tissue is the one that is meant, so it is waited for."""
+        with self._wanted:
+            is_over = self._wanted.wait_for(lambda: self.path is None or self.cells or self.problem, READING_S)
+        if not is_over:
+            raise ValueError(f"{self.source}: is still being read; use it once it is shown")
         if self._scenario is None or self.path is None or self.cells == 0:
             raise ValueError("no tissue is shown; choose a file that can be read")
         table = self._scenario.to_dict()
