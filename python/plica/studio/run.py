@@ -26,7 +26,7 @@ from .frames import Frame, FrameFile
 from .messages import packed
 from .shapes import ends_of_colours, shape_message, values_now
 
-FRAME_APART_S = 0.02  # of wall time, between frames that are kept beside those of the scenario
+FRAME_APART_S = 0.04  # of wall time, between frames that are kept beside those of the scenario
 MOST_KEPT = 64
 INSTANT_S = 1e-6
 
