@@ -84,6 +84,25 @@ def test_wrong_labels_are_doubtful_and_links_join_daughters():
     assert np.array_equal(shapes_of(renamed, cells, links=numbers).centres_um, clean.centres_um, equal_nan=True)
 
 
+@pytest.mark.parametrize("how", [
+    "right, gone, right, merged, cut, cut, right",     # taken away one by one, 2 and 6 went and 4 and 5 stayed
+    "gone, cut, right, merged, right, merged, right",  # none was left
+])
+def test_wrong_labels_around_a_gap_are_told_together(how):
+    movie, cells = drawn()
+    label, other = cells.cell_data["label"][5:7].astype(int)
+    images = [image.copy() for image in movie]
+    for image, one in zip(images, how.split(", ")):
+        if one == "merged":
+            image[image == other] = label
+        elif one != "right":
+            upper = np.indices(image.shape)[0] < np.argwhere(image == label)[:, 0].mean()
+            image[(image == label) & (upper | (one == "gone"))] = 999
+    wrong = [one in ("merged", "cut") for one in how.split(", ")]
+    doubtful = shapes_of(images, cells).doubtful
+    assert doubtful[:, 5].tolist() == wrong and doubtful.sum() == sum(wrong)
+
+
 def test_a_wrong_first_frame_leaves_later_ones():
     movie, cells = drawn()
     shapes = shapes_of(movie, cells)
