@@ -1,8 +1,8 @@
 """Fit the hypotheses of hypotheses.toml, and run the held-out tests of experiments.toml with each.
 
 Usage: compare.py RESULTS [--runs 8] [--early] [--tables], with a folder per hypothesis in RESULTS/fits and RESULTS/held-out. The same command
-continues after an interruption. --tables runs nothing. Writes fits.csv and held-out.csv; with --early, the third round, early-fits.csv and
-early-held-out.csv. paper.py makes tables and figures of them.
+continues after an interruption. --tables runs nothing. Writes fits.csv and held-out.csv; with --early, the third round, whose fits are polished
+(polish.py), early-fits.csv and early-held-out.csv. paper.py makes tables and figures of them.
 """
 import argparse
 import csv
@@ -62,11 +62,13 @@ if __name__ == "__main__":
     names, prefix = list(fit.PLAN["hypothesis"]), "early-" if options.early else ""
     for name in [] if options.tables else names:
         subprocess.run([sys.executable, fit.HERE / "fit.py", name, fits / name, "--runs", options.runs, *["--early"][: options.early]], check=True)
+        if options.early:
+            subprocess.run([sys.executable, fit.HERE / "polish.py", name, fits / name], check=True)
         subprocess.run([sys.executable, fit.HERE / "held_out.py", fits / name, held_out / name], check=True)
     lights = list(dict.fromkeys(target.get("light_min") for target in fit.PLAN["target"]))
     found = [json.loads(path.read_text()) for name in names if (path := fits / name / "evidence.json").exists()]
     rows, columns = fits_table(found, lights)
     write(f"{prefix}fits.csv", rows, columns)
     tested = {name: held_out / name for name in names if (held_out / name / "runs/experiments.csv").exists()}
-    rows, columns = held_out_table(tested)
-    write(f"{prefix}held-out.csv", rows, columns)
+    if tested:
+        write(f"{prefix}held-out.csv", *held_out_table(tested))
