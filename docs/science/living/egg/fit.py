@@ -151,6 +151,15 @@ def promise(fit, away, slopes, low, high):
     return float(residuals @ residuals - ((residuals + rows @ step) ** 2).sum())
 
 
+def problem_of(name, early):
+    """What is fitted, to which targets, and what is known beforehand: arguments of plica.fit."""
+    scenario, bounds = scenario_of(name)
+    with (HERE / ("early-starts.csv" if early else "starts.csv")).open() as file:
+        start = next(row for row in csv.DictReader(file) if row["hypothesis"] == name)
+    scenario.update({key: float(start[key]) for key in bounds})
+    return experiments(scenario, early), bounds, {key: prior(*ends) for key, ends in bounds.items()}
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("hypothesis", choices=list(PLAN["hypothesis"]))
@@ -158,13 +167,9 @@ if __name__ == "__main__":
     parser.add_argument("--runs", type=int, default=8)
     parser.add_argument("--early", action="store_true")
     options = parser.parse_args()
-    scenario, bounds = scenario_of(options.hypothesis)
-    with (HERE / ("early-starts.csv" if options.early else "starts.csv")).open() as file:
-        start = next(row for row in csv.DictReader(file) if row["hypothesis"] == options.hypothesis)
-    scenario.update({key: float(start[key]) for key in bounds})
+    tests, bounds, priors = problem_of(options.hypothesis, options.early)
     warnings.simplefilter("ignore")
-    fit = plica.fit(experiments(scenario, options.early), of=bounds, priors={key: prior(*ends) for key, ends in bounds.items()}, runs=options.runs,
-                    tolerance=TOLERANCE, folder=options.folder, progress=True)
+    fit = plica.fit(tests, of=bounds, priors=priors, runs=options.runs, tolerance=TOLERANCE, folder=options.folder, progress=True)
     found = {"hypothesis": options.hypothesis, **evidence(fit, bounds), "values": fit.values,
              "targets": [[one.scenario, str(one.outcome), one.at_min, one.value, one.sd, one.found] for one in fit.misses]}
     (options.folder / "evidence.json").write_text(json.dumps(found, indent=1) + "\n")
