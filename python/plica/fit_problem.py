@@ -7,6 +7,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from statistics import NormalDist
 from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
@@ -288,3 +289,9 @@ def targets_until(experiment: Experiment, until: Optional[float]) -> list[Row]:
 
 def name_of(outcome: Outcome) -> str:
     return outcome if isinstance(outcome, str) else getattr(outcome, "__name__", "function")
+
+
+def largest_by_chance(free: float) -> float:
+    """Return the sum of as many squared normal numbers of variance 1 that 0.1 % exceed (chi-square; Wilson and Hilferty 1931)."""
+    spread = 2 / (9 * free)
+    return free * (1 - spread + NormalDist().inv_cdf(0.999) * math.sqrt(spread)) ** 3

@@ -21,7 +21,7 @@ from .arguments import number, number_from, path_of, told, whole
 from .descent import End, descend
 from .errors import NumericsError, needed
 from .fit_files import write_tables
-from .fit_problem import Problem, Scale, Source, experiments_of, name_of
+from .fit_problem import Problem, Scale, Source, experiments_of, largest_by_chance, name_of
 from .local_energy import LocalEnergy
 from .names import in_columns, label, name_and_unit
 from .progress import Counter
@@ -134,9 +134,9 @@ class Fit:
 
     @property
     def has_model_error(self) -> bool:
-        """Whether targets are missed by more than their errors, beyond chance. Intervals are then too narrow."""
-        free = max(len(self.misses) - sum(not one.is_open for one in self.combinations), 1)
-        return self.score > free + 3 * math.sqrt(2 * free)
+        """Whether targets are missed by more than their errors: a right model has such a score with a probability below 0.1 %, by the
+        chi-square distribution for targets without identified combinations. Intervals are then too narrow."""
+        return self.score > largest_by_chance(max(len(self.misses) - sum(not one.is_open for one in self.combinations), 1))
 
     def intervals(self, level: float = 0.9) -> dict[str, tuple[float, float]]:
         """Return the interval of each key at a level, within its bounds (normal in the logarithm).
@@ -296,7 +296,7 @@ def fit(
     Warns
     -----
     UserWarning
-        If targets are missed by more than their errors.
+        If targets are missed by more than their errors (`Fit.has_model_error`).
 
     Examples
     --------

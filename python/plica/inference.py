@@ -16,6 +16,7 @@ import hashlib
 import math
 import os
 import sys
+import warnings
 import zipfile
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -28,6 +29,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arguments import number_from, path_of, text_of, texts_of, told, whole
 from .errors import FileError, NumericsError
+from .fit_problem import largest_by_chance
 from .inference_problem import Field, Problem
 from .knots import divided, times_of
 from .scenario import Scenario
@@ -48,8 +50,10 @@ SLOW, SLOW_AFTER = 0.03, 5  # relative decrease of an iteration, after some, at 
 SLOW_EARLY = 0.1  # the same at which the next shape is compared, too
 MOST_ADAPTED = 20  # times that weights are adapted at one point
 TINY = float(np.finfo(float).tiny)
+MISSED = "Residuals exceed the noise: the model differs from the tissue, or noise_um is too small"
 SEARCH_PROBES = 6  # gradients for the curvature, by default
 MOST_WHOLE = 200  # coefficients, up to which the whole Hessian is computed by default
+NOISE_ERROR = 0.1  # relative, of the noise that is given, up to which no model is said to be wrong
 
 
 class _Descent:
@@ -152,9 +156,19 @@ class _Descent:
         curvature = self.weight * self.curvature
         return self.problem.by_law(curvature / (curvature + self.precision))
 
+    @property
+    def free(self) -> float:
+        """Residuals minus coefficients that they determine: expected sum of squares where the model explains the shapes."""
+        return max(float(self.problem.counts(self.times).sum()) - sum(float(of_law.sum()) for of_law in self.known()), 1.0)
+
+    @property
+    def is_missed(self) -> bool:
+        """Whether residuals exceed the noise by more than its error and chance."""
+        return float(self.misfits.sum()) > (1 + NOISE_ERROR) ** 2 * largest_by_chance(self.free)
+
     def adapt(self) -> bool:
         """Set the prior's spread by its evidence, and the misfit's weight if it exceeds the noise. Returns whether they changed."""
-        known = self.known()
+        known, free = self.known(), self.free
         before = np.append(self.spreads, self.weight**-0.5)
         if self.given_spread is None:
             for k, (field, v, of_law) in enumerate(zip(self.problem.fields, self.problem.by_law(self.v), known)):
@@ -162,8 +176,7 @@ class _Descent:
                 if of_law[varied].sum() > 0:
                     spread = math.sqrt(float(field.unit_precision[varied] @ v[varied]**2) / float(of_law[varied].sum()))
                     self.spreads[k] = min(max(spread, SPREADS[0]), SPREADS[1])
-        free = self.problem.counts(self.times).sum() - sum(float(of_law.sum()) for of_law in known)
-        self.weight = min(1.0, max(free, 1.0) / max(float(self.misfits.sum()), TINY))
+        self.weight = min(1.0, free / max(float(self.misfits.sum()), TINY))
         return bool(np.abs(np.log(np.append(self.spreads, self.weight**-0.5) / before)).max() > 0.1)
 
     def fit(self, most_runs: int, after_step: Callable[[], None]) -> None:
@@ -244,6 +257,9 @@ class Inference:
         Recorded runs.
     converged : bool
         Whether the minimum was reached within `most_runs`.
+    has_model_error : bool
+        Whether residuals are too large for a right model, also if the noise were 10 % larger than `noise_um`: their sum of squares,
+        over that noise, has a probability below 0.1 % for as many residuals without the factors that they determine.
     """
 
     scenario: Scenario
@@ -258,6 +274,7 @@ class Inference:
     length_um: dict[str, float]
     runs: int
     converged: bool
+    has_model_error: bool
 
     @property
     def strengths(self) -> dict[str, Array]:
@@ -289,6 +306,8 @@ class Inference:
             lines.append(f"{law}: factors {np.nanmin(factors):.2f} to {np.nanmax(factors):.2f} relative to the mean, "
                          f"± {np.nanmedian(self.sd[law]):.1%}; {seen:.0%} of the cells seen by the shapes")
         lines.append("misfit / noise: " + ", ".join(f"{one:.2f} at {time:g} min" for one, time in zip(self.misfit, self.times_min)))
+        if self.has_model_error:
+            lines.append(MISSED + ("." if self.converged else ", or more runs are needed."))
         lines.append(f"ratios only; mean factor {self.scale:.3g} if stiffnesses and drag are as in the scenario")
         return "\n".join(lines)
 
@@ -365,6 +384,11 @@ def infer(
     NumericsError
         If the scenario itself cannot be run.
 
+    Warns
+    -----
+    UserWarning
+        If residuals exceed the noise (`Inference.has_model_error`).
+
     Notes
     -----
     Maximum of the posterior for Gaussian noise and a Gaussian prior of log factors, by L-BFGS; intervals by Laplace's
@@ -412,7 +436,13 @@ def infer(
             _tell(descent)
 
     descent.fit(limit, after_step)
-    return _result(descent)
+    found = _result(descent)
+    if found.has_model_error:
+        worst = int(np.argmax(found.misfit))
+        warnings.warn(f"infer: residuals are {found.misfit[worst]:.2f} times the noise at {found.times_min[worst]:g} min, more than chance "
+                      "explains; the model differs from the tissue (moduli, drag, mesh, time courses), or noise_um is too small"
+                      + ("" if found.converged else "; the search did not converge: set a larger most_runs first"), stacklevel=2)
+    return found
 
 
 def _residuals(scenario: Scenario, simulation: Simulation, shapes: Any, surface: str, noise_um: float,
@@ -514,7 +544,8 @@ def _result(descent: _Descent) -> Inference:
         scenario=problem.scenario.copy(), factors=by_law(factors / scale), sd=by_law(np.sqrt(covariance)), unseen=by_law(np.minimum(covariance / prior, 1)), scale=scale,
         times_min=np.array(problem.times_min[: descent.times]), misfit=np.sqrt(descent.misfits / counts), excess=descent.weight**-0.5,
         spread={field.law: float(one) for field, one in zip(problem.fields, descent.spreads)},
-        length_um={field.law: field.length_um for field in problem.fields}, runs=problem.runs, converged=descent.converged)
+        length_um={field.law: field.length_um for field in problem.fields}, runs=problem.runs, converged=descent.converged,
+        has_model_error=descent.is_missed)
 
 
 def _variances(descent: _Descent, parts: Array) -> tuple[Array, Array]:

@@ -2,7 +2,6 @@
 // planes and resumed runs.
 #include "mechanics/growth.hpp"
 
-#include "core/threads.hpp"
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "support/divided.hpp"
@@ -295,17 +294,7 @@ TEST(Growth, WithDivisionKeepsVolumesAndResumesBitwiseOnAnyNumberOfThreads) {
   std::printf("%zu cells of %d steps, volume x %.3f\n", whole.model().tissue.cells.size(), whole.steps(), grown_ratio);
   EXPECT_GT(whole.model().tissue.cells.size(), 30U);
   EXPECT_NEAR(grown_ratio, std::exp(3.2 / 5), 0.15);
-  int resumed = 0;
-  for (std::size_t k = 3; k < memories.size(); k += memories.size() / 5, ++resumed) {
-    const ThreadCount threads(1 + resumed % 3);
-    Simulation rest(scenario);
-    go_on_by_bytes(rest, memories[k]);
-    while (rest.step()) (void)rest.memory();
-    expect_same(rest.state(), whole.state());
-    EXPECT_EQ(rest.steps(), whole.steps());
-    ASSERT_FALSE(testing::Test::HasFailure()) << "from step " << k + 1;
-  }
-  EXPECT_GE(resumed, 4);
+  expect_to_end_alike(scenario, whole, memories, 3, memories.size() / 5);
 }
 
 TEST(Growth, CellsDivideInBatchesIfThresholdsAreCheckedSeldom) {

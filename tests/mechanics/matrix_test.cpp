@@ -2,7 +2,6 @@
 // membrane, relaxation, and what changes of the tissue leave.
 #include "mechanics/matrix.hpp"
 
-#include "core/threads.hpp"
 #include "mechanics/energy.hpp"
 #include "mechanics/exchange.hpp"
 #include "support/divided.hpp"
@@ -256,16 +255,7 @@ TEST(Matrix, RunsResumeBitwiseOnAnyNumberOfThreads) {
   while (whole.step()) memories.push_back(whole.memory());
   ASSERT_EQ(whole.status(), RunStatus::end_time) << whole.failure();
   EXPECT_EQ(whole.model().tissue.cells.size(), 12U);
-  int resumed = 0;
-  for (std::size_t k = 0; k < memories.size(); k += 7, ++resumed) {
-    const ThreadCount threads(1 + resumed % 3);
-    Simulation rest(scenario);
-    go_on_by_bytes(rest, memories[k]);
-    while (rest.step()) (void)rest.memory();
-    plica::support::expect_same(rest.state(), whole.state());
-    ASSERT_FALSE(testing::Test::HasFailure()) << "from step " << k + 1;
-  }
-  EXPECT_GE(resumed, 4);
+  expect_to_end_alike(scenario, whole, memories, 0, 7);
 }
 
 TEST(MatrixKeys, ErrorsNameTheRemedy) {

@@ -94,6 +94,23 @@ def test_model_error_is_told():
     assert found.has_model_error and "intervals are too narrow" in str(found)
 
 
+@pytest.mark.filterwarnings("error::UserWarning")
+def test_a_right_model_is_not_blamed():
+    for seed in range(20):
+        assert not plica.fit(block(), targets_of(block(TRUTH), 0.01, noise=0.01, seed=seed), of=KEYS).has_model_error
+
+
+def test_a_doubled_modulus_is_told():
+    keys = {key: bounds for key, bounds in KEYS.items() if key != APICAL}  # else all forces would double
+    with pytest.warns(UserWarning, match="missed by more than their errors"):
+        plica.fit(block({APICAL: TRUTH[APICAL]}), targets_of(block({**TRUTH, YOUNG: 2000}), 0.01, noise=0.01), of=keys)
+
+
+@pytest.mark.parametrize("free, exceeded", [(1, 10.83), (4, 18.47), (10, 29.59), (100, 149.4)])  # tables of chi-square
+def test_what_chance_explains(free, exceeded):
+    assert fit_problem.largest_by_chance(free) == pytest.approx(exceeded, rel=0.035)
+
+
 def test_only_ratios_of_forces_are_identified(exact):
     found = plica.fit(block(), exact, of={**KEYS, YOUNG: (200, 5000)})
     *known, last = found.combinations

@@ -54,9 +54,37 @@ def test_tensions_of_a_finer_mesh_are_recovered():
         centres, areas = seen[time]
         shapes[time] = {"centres_um": centres + noise_um * rng.normal(size=centres.shape),
                         "areas_um2": areas + noise_um * np.sqrt(2 * areas) * rng.normal(size=areas.shape)}
-    found = plica.infer(model, shapes, of=LAW, noise_um=noise_um, probes=6)
+    with pytest.warns(UserWarning, match="times the noise at 2 min, more than chance explains; the model differs"):
+        found = plica.infer(model, shapes, of=LAW, noise_um=noise_um, probes=6)
     assert np.corrcoef(np.log(found.factors[LAW]), np.log(truth))[0, 1] > 0.95
     assert found.runs < 30 and found.excess > 2  # the coarse model does not fit to the noise
+
+
+def noisy_six_cells(seed):
+    """Return a block of six cells, its noisy shape, and the noise."""
+    block, rng = BLOCK.copy(), np.random.default_rng(seed)
+    block.update({"embryo.length_um": 24, "embryo.width_um": 16, "embryo.cells": [3, 2, 1]})
+    shape = plica.record(block, strengths={LAW: np.exp(0.25 * rng.normal(size=6))}).positions()
+    noise_um = 0.02 * np.sqrt(((shape - plica.Simulation(block).positions) ** 2).sum(axis=1).mean())
+    return block, {1: shape + noise_um * rng.normal(size=shape.shape)}, noise_um
+
+
+@pytest.mark.filterwarnings("error::UserWarning")
+def test_a_right_model_is_not_blamed():
+    for seed in range(20):
+        block, shapes, noise_um = noisy_six_cells(seed)
+        found = plica.infer(block, shapes, of=LAW, noise_um=noise_um)
+        assert not found.has_model_error and "exceed" not in repr(found)
+
+
+def test_a_doubled_modulus_is_told():
+    block, shapes, noise_um = noisy_six_cells(0)
+    block["elasticity.young_modulus_Pa"] *= 2
+    with pytest.warns(UserWarning, match="or noise_um is too small$"):
+        found = plica.infer(block, shapes, of=LAW, noise_um=noise_um)
+    assert found.has_model_error and "Residuals exceed the noise: the model differs" in repr(found)
+    with pytest.warns(UserWarning, match="did not converge: set a larger most_runs first"):
+        assert "or more runs are needed" in repr(plica.infer(block, shapes, of=LAW, noise_um=noise_um, most_runs=3))
 
 
 def test_nodes_that_are_not_seen(block_shape, tmp_path, capsys):
@@ -220,7 +248,8 @@ def test_shapes_that_drift(block_shape):
     moved = plica.infer(BLOCK, {0: start, 1: shape + [5, -3, 1]}, drift="xyz", **how)
     assert moved.factors[LAW] == pytest.approx(still.factors[LAW], rel=1e-4) and moved.sd[LAW] == pytest.approx(still.sd[LAW], rel=1e-4)
     assert np.abs(np.log(still.factors[LAW] / block_shape[0] * block_shape[0].mean())).max() < 0.15
-    pushed = plica.infer(BLOCK, {0: start, 1: shape + [0.3, 0, 0]}, **how)
+    with pytest.warns(UserWarning, match="more than chance explains"):
+        pushed = plica.infer(BLOCK, {0: start, 1: shape + [0.3, 0, 0]}, **how)
     assert np.abs(np.log(pushed.factors[LAW] / still.factors[LAW])).max() > 0.1
 
 

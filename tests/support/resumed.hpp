@@ -1,6 +1,7 @@
 // Simulations that go on from a moment of another, and whether they are where that one is, to the bit.
 #pragma once
 
+#include "core/threads.hpp"
 #include "record/archive.hpp"
 #include "record/checkpoint.hpp"
 #include "simulation/simulation.hpp"
@@ -31,6 +32,23 @@ inline void go_on_by_bytes(Simulation& fresh, const RunMemory& memory) {
   Checkpoint checkpoint{"", "", "", memory, {}};
   if (can_archive()) checkpoint = read_checkpoint_bytes(checkpoint_bytes(checkpoint));
   fresh.go_on_from(std::move(checkpoint.run));
+}
+
+/// Runs that go on from every nth of these moments, from the one with number `first` on, with one to three threads in
+/// turn, end where the whole run did.
+inline void expect_to_end_alike(const Scenario& scenario, const Simulation& whole,
+                                const std::vector<RunMemory>& moments, std::size_t first, std::size_t every) {
+  int resumed = 0;
+  for (std::size_t k = first; k < moments.size(); k += every, ++resumed) {
+    const ThreadCount threads(1 + resumed % 3);
+    Simulation rest(scenario);
+    go_on_by_bytes(rest, moments[k]);
+    while (rest.step()) (void)rest.memory();
+    expect_same(rest.state(), whole.state());
+    EXPECT_EQ(rest.steps(), whole.steps());
+    ASSERT_FALSE(testing::Test::HasFailure()) << "from step " << k + 1;
+  }
+  EXPECT_GE(resumed, 4);
 }
 
 }  // namespace plica::support

@@ -1,7 +1,6 @@
 // Laws that follow a signal: growth, layers of matrix, foundations.
 #include "mechanics/active/followed_signal.hpp"
 
-#include "core/threads.hpp"
 #include "mechanics/derivatives.hpp"
 #include "mechanics/foundation.hpp"
 #include "mechanics/matrix.hpp"
@@ -149,16 +148,7 @@ TEST(FollowedSignal, RunsGoOnToTheSameBits) {
   ASSERT_EQ(whole.status(), RunStatus::end_time) << whole.failure();
   EXPECT_GT(whole.state().exchanges.count, 0);
   EXPECT_GT(whole.divisions(), 0);
-  int resumed = 0;
-  for (std::size_t k = 14; k + 1 < memories.size(); k += memories.size() / 4, ++resumed) {
-    const ThreadCount threads(1 + resumed % 3);
-    Simulation rest(scenario);
-    go_on_by_bytes(rest, memories[k]);
-    while (rest.step()) (void)rest.memory();
-    expect_same(rest.state(), whole.state());
-    ASSERT_FALSE(testing::Test::HasFailure()) << "from step " << k + 1;
-  }
-  EXPECT_GE(resumed, 3);
+  expect_to_end_alike(scenario, whole, memories, 14, memories.size() / 4);
 }
 
 TEST(FollowedSignal, ErrorsNameTheRemedy) {
