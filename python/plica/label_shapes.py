@@ -32,6 +32,7 @@ FEWEST_FOUND = 0.5   # of the cells, in each frame
 OUTLIER = 5.0        # standard deviations of the noise from a steady movement
 MOVEMENT = 0.06      # of a cell's size, and
 CHANGE = 0.1         # of the logarithm of its area or volume: smaller departures from a steady movement are no errors
+FAR = 0.5            # of a cell's size: at least the way to another cell
 OUTSIDE = -1         # in place of a cell
 
 
@@ -52,7 +53,8 @@ class LabelledShapes(Mapping[float, dict[str, Array]]):
     """Shapes of the cells of a movie, by time in minutes: `shapes` of `plica.infer`. Made by `plica.shapes_of_labels`.
 
     ``shapes[time]`` has ``centres_um`` and ``areas_um2`` of cells in images, ``centroids_um`` and ``moments_um2`` of whole cells in
-    volumes, NaN where they are unknown or doubtful, and of cells whose first label was another cell, such as two merged ones.
+    volumes, NaN where they are unknown or doubtful, and of cells whose first label was another cell, such as two merged ones, or one
+    whose label passed to a neighbour.
 
     Attributes
     ----------
@@ -122,12 +124,15 @@ class LabelledShapes(Mapping[float, dict[str, Array]]):
         return _Series(size, self.centroids_um / size, self.moments_um2 / (usual * size), np.log(self.volumes_um3)[..., None])
 
     def _first_was_other(self) -> NDArray[np.bool_]:
-        """Return which cells are doubtful in the first frame, and have another size in the next one where they are not."""
-        sizes = np.where(self.doubtful, np.nan, self.areas_um2 if self._is_image else self.volumes_um3)
-        later = np.isfinite(sizes).argmax(axis=0)
-        first = (self.areas_um2 if self._is_image else self.volumes_um3)[0]
+        """Return which cells are doubtful in the first frame, and in the next one where they are not have another size, or are far from
+        there, apart from the movement that is common to all cells."""
+        sizes, places = (self.areas_um2, self.centres_um[..., :2]) if self._is_image else (self.volumes_um3, self.centroids_um)
+        later = (np.isfinite(sizes) & ~self.doubtful).argmax(axis=0), np.arange(len(self.labels))
+        moved = places - places[0]
         with np.errstate(invalid="ignore"):
-            return np.asarray(self.doubtful[0] & ~(np.abs(np.log(first / sizes[later, np.arange(len(first))])) < CHANGE))
+            far = np.linalg.norm(moved - np.nanmedian(moved, axis=1, keepdims=True), axis=2)[later] > FAR * self._series().size_um
+            other = ~(np.abs(np.log(np.where(self.doubtful, np.nan, sizes)[later] / sizes[0])) < CHANGE)
+        return np.asarray(self.doubtful[0] & (other | far))
 
     def _told(self) -> list[str]:
         remarks = []

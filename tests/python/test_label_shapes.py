@@ -131,6 +131,22 @@ def test_a_first_label_of_two_cells_is_left_out():
     assert all(np.isnan(shapes[time]["areas_um2"][cell]) for time in TIMES) and np.isfinite(shapes[3]["areas_um2"]).sum() == len(shapes.labels) - 1
 
 
+def test_a_label_that_goes_on_to_another_cell_is_left_out():
+    """As where two cells are merged in a frame, and one of them is missing from then on."""
+    movie, cells = drawn()
+    right = shapes_of(movie, cells)
+    alike = np.abs(np.log(right.areas_um2[0][:, None] / right.areas_um2[2])) < 0.05
+    near = np.linalg.norm(right.centres_um[0][:, None, :2] - right.centres_um[2][:, :2], axis=2) < 1.5 * np.sqrt(np.median(right.areas_um2[0]))
+    cell, other = np.argwhere(alike & near & ~np.eye(len(alike), dtype=bool))[0]
+    later = [image.copy() for image in movie]
+    for image in later[2:]:
+        image[image == right.labels[cell]] = 999
+        image[image == right.labels[other]] = right.labels[cell]
+    shapes = shapes_of(later, cells)
+    assert shapes.doubtful[:, cell].tolist() == 2 * [True] + 5 * [False]
+    assert all(np.isnan(shapes[time]["centres_um"][cell]).all() for time in TIMES) and np.isfinite(shapes[1]["areas_um2"]).sum() == len(alike) - 2
+
+
 def test_moments_of_labels():
     numbers = np.random.default_rng(1).integers(0, 4, (5, 6, 7))
     spacing, origin = np.array([0.5, 0.3, 0.2]), np.array([1.0, 2, 3])
