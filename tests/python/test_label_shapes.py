@@ -131,7 +131,7 @@ def test_a_first_label_of_two_cells_is_left_out():
     assert all(np.isnan(shapes[time]["areas_um2"][cell]) for time in TIMES) and np.isfinite(shapes[3]["areas_um2"]).sum() == len(shapes.labels) - 1
 
 
-def test_a_label_that_goes_on_to_another_cell_is_left_out():
+def test_a_label_that_passes_to_another_cell_is_left_out():
     """As where two cells are merged in a frame, and one of them is missing from then on."""
     movie, cells = drawn()
     right = shapes_of(movie, cells)
