@@ -54,7 +54,7 @@ class LabelledShapes(Mapping[float, dict[str, Array]]):
 
     ``shapes[time]`` has ``centres_um`` and ``areas_um2`` of cells in images, ``centroids_um`` and ``moments_um2`` of whole cells in
     volumes, NaN where they are unknown or doubtful, and of cells whose first label was another cell, such as two merged ones, or one
-    from which the label went on to a neighbour.
+    whose label passed to a neighbour.
 
     Attributes
     ----------
