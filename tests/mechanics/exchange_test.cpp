@@ -4,6 +4,7 @@
 #include "measure/cells.hpp"
 #include "measure/neighbours.hpp"
 #include "mechanics/active/cortex.hpp"
+#include "mechanics/contact/self_contact.hpp"
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/energy.hpp"
@@ -201,7 +202,32 @@ TEST(ExchangeOfCells, IsLeftUndoneWhereForcesWouldCloseTheNewFace) {
   EXPECT_EQ(state.positions, model.tissue.rest_positions);
 }
 
-// A judgement costs a change of the whole model.
+// Contact, of which there is none here, may join distant cells: the whole sheet is changed to judge then.
+TEST(ExchangeOfCells, IsJudgedByCellsAboutTheWallAsByTheWholeSheet) {
+  Model part = foam(uneven_sheet(), 0.2);
+  State of_part = flowed_state(part);
+  Model whole(part);
+  State of_whole = of_part;
+  whole.laws.push_back(std::make_unique<SelfContact>(whole.tissue, SelfContactRule{.distance = 0.01, .search = 0.02}));
+  of_whole.internals.push_back(whole.laws.back()->first_internal(whole.tissue));
+  const auto expect_same = [&](const auto& change) {
+    const std::optional<ExchangeOutcome> one = change(part, of_part), other = change(whole, of_whole);
+    ASSERT_TRUE(one && other);
+    EXPECT_NEAR(one->energy, other->energy, 1e-9 * std::abs(other->energy));
+    EXPECT_EQ(of_part.positions, of_whole.positions);
+  };
+  Model of_one(part);
+  State then = of_part;
+  const auto chosen = shortest_turned(of_one, then);
+  ASSERT_TRUE(chosen);
+  expect_same([&](Model& model, State& state) { return exchange_neighbours(model, state, chosen->turns, 0.5); });
+  for (const std::size_t place : {std::size_t{0}, std::size_t{20}})
+    expect_same([&](Model& model, State& state) {
+      return part_neighbours(model, state, {possible_turns(model.tissue.sheet)[place]}, 2);
+    });
+}
+
+// A judgement costs a change of the cells about the walls.
 TEST(ExchangeOfCells, IsNotTriedAgainAtOnce) {
   Model model = foam(uneven_sheet());
   State state = rest_state(model);
