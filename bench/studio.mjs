@@ -68,6 +68,7 @@ async function watching(scenario) {
     execFileSync(plica, ["run", scenario, "--out", alone, "--overwrite", "--quiet", "--threads", "1"], { stdio: "ignore" });
     const ticks = ticksOf("self") - before;
     await open(scenario);
+    await page.waitForTimeout(1000); // as a person would: the still tissue is drawn finely meanwhile
     const opened = ticksOf(server.pid);
     await page.click("#go");
     await page.waitForFunction(() => ["end_time", "equilibrium"].includes(

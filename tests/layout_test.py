@@ -18,7 +18,7 @@ FOLDERS = ("core", "tissue", "mechanics", "solver", "measure", "scenario", "simu
 ROOMS_OF_SOLVER = ("algebra", "multigrid", "linear", "step", "projection", "sensitivity")
 MOST_LINES = 500
 # Headers of src/mechanics that define no law, beside those of kernels/.
-NOT_A_LAW = {"law", "law_activity", "law_change", "law_memory", "step", "derivatives", "internal_change", "constraint", "obstacle", "model", "program", "turning_elements", "cell_pattern", "reaction", "signal_parts", "shape_activation", "followed_signal", "wall_factors", "fibres", "local_energy",
+NOT_A_LAW = {"law", "law_activity", "law_change", "law_memory", "step", "cells_apart", "derivatives", "internal_change", "constraint", "obstacle", "model", "program", "turning_elements", "cell_pattern", "reaction", "signal_parts", "shape_activation", "followed_signal", "wall_factors", "fibres", "local_energy",
              "hexahedron_stiffness", "element_values", "contact_pair", "edge_pairs", "nonconforming_edges", "model_memory"}
 MEASURES_MARK = "<!-- Below: what plica reference --measures prints. -->\n"
 UNIT_AT_END = re.compile(r"_(um|um2|um3|s|um_per_s|per_um|nN|nN_um|deg|Pa|ratio|error)$")

@@ -32,6 +32,7 @@ FEWEST_FOUND = 0.5   # of the cells, in each frame
 OUTLIER = 5.0        # standard deviations of the noise from a steady movement
 MOVEMENT = 0.06      # of a cell's size, and
 CHANGE = 0.1         # of the logarithm of its area or volume: smaller departures from a steady movement are no errors
+FAR = 0.5            # of a cell's size: at least the way to another cell
 OUTSIDE = -1         # in place of a cell
 
 
@@ -52,7 +53,8 @@ class LabelledShapes(Mapping[float, dict[str, Array]]):
     """Shapes of the cells of a movie, by time in minutes: `shapes` of `plica.infer`. Made by `plica.shapes_of_labels`.
 
     ``shapes[time]`` has ``centres_um`` and ``areas_um2`` of cells in images, ``centroids_um`` and ``moments_um2`` of whole cells in
-    volumes, NaN where they are unknown or doubtful, and of cells whose first label was another cell, such as two merged ones.
+    volumes, NaN where they are unknown or doubtful, and of cells whose first label was another cell, such as two merged ones, or one
+    whose label passed to a neighbour.
 
     Attributes
     ----------
@@ -122,12 +124,15 @@ class LabelledShapes(Mapping[float, dict[str, Array]]):
         return _Series(size, self.centroids_um / size, self.moments_um2 / (usual * size), np.log(self.volumes_um3)[..., None])
 
     def _first_was_other(self) -> NDArray[np.bool_]:
-        """Return which cells are doubtful in the first frame, and have another size in the next one where they are not."""
-        sizes = np.where(self.doubtful, np.nan, self.areas_um2 if self._is_image else self.volumes_um3)
-        later = np.isfinite(sizes).argmax(axis=0)
-        first = (self.areas_um2 if self._is_image else self.volumes_um3)[0]
+        """Return which cells are doubtful in the first frame, and in the next one where they are not have another size, or are far from
+        there, apart from the movement that is common to all cells."""
+        sizes, places = (self.areas_um2, self.centres_um[..., :2]) if self._is_image else (self.volumes_um3, self.centroids_um)
+        later = (np.isfinite(sizes) & ~self.doubtful).argmax(axis=0), np.arange(len(self.labels))
+        moved = places - places[0]
         with np.errstate(invalid="ignore"):
-            return np.asarray(self.doubtful[0] & ~(np.abs(np.log(first / sizes[later, np.arange(len(first))])) < CHANGE))
+            far = np.linalg.norm(moved - np.nanmedian(moved, axis=1, keepdims=True), axis=2)[later] > FAR * self._series().size_um
+            other = ~(np.abs(np.log(np.where(self.doubtful, np.nan, sizes)[later] / sizes[0])) < CHANGE)
+        return np.asarray(self.doubtful[0] & (other | far))
 
     def _told(self) -> list[str]:
         remarks = []
@@ -434,8 +439,13 @@ def _doubtful_and_noise(times: Array, given: _Series, pixel_um: float) -> tuple[
 def _departures(times: Array, series: Array) -> Array:
     """Return how far each inner time is from the straight line through the time before and after, over the standard deviation of
     that for independent noise of 1; shape (times - 2, ...)."""
-    share = ((times[1:-1] - times[:-2]) / (times[2:] - times[:-2])).reshape(-1, *(1,) * (series.ndim - 1))
-    return np.asarray((series[1:-1] - (1 - share) * series[:-2] - share * series[2:]) / np.sqrt(1 + share**2 + (1 - share) ** 2))
+    share = (times[1:-1] - times[:-2]) / (times[2:] - times[:-2])
+    return _off_line(series[:-2], series[1:-1], series[2:], share.reshape(-1, *(1,) * (series.ndim - 1)))
+
+
+def _off_line(before: Array, at: Array, after: Array, share: Array) -> Array:
+    """Return how far `at` is from this share of the way from `before` to `after`, as `_departures`."""
+    return np.asarray((at - (1 - share) * before - share * after) / np.sqrt(1 + share**2 + (1 - share) ** 2))
 
 
 def _spread(times: Array, series: Array) -> Array:
@@ -446,9 +456,45 @@ def _spread(times: Array, series: Array) -> Array:
 
 
 def _steady(times: Array, series: Array, known: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the times that remain without as few as possible, so that no departure exceeds 1; none if these are less than half."""
-    kept = known
-    while len(kept) > 2 and np.abs(_departures(times[kept], series[kept])).max() > 1:
-        ways = [np.delete(kept, one) for one in range(len(kept))]
-        kept = min(ways, key=lambda way: float((_departures(times[way], series[way]) ** 2).sum()))
-    return kept if 2 * len(kept) >= len(known) and len(kept) > 2 else kept[:0]
+    """Return the times that remain without as few as possible, so that no departure exceeds 1, and of as many those which depart least;
+    none if these are less than half."""
+    longest = 2
+    while True:
+        longest *= 2
+        kept = known[_steadiest(times[known], series[known], longest)]
+        if len(known) - len(kept) <= longest or longest >= len(known):  # a longer gap leaves out more
+            return kept if 2 * len(kept) >= len(known) else kept[:0]
+
+
+def _steadiest(times: Array, series: Array, longest: int) -> NDArray[np.int64]:
+    """Return the numbers of these times, with at most `longest` left out in a row; none if there are no such three or more.
+
+    A shortest path: from a pair of times that follow each other to the next pair. Each departure costs its square, which is at most 1
+    by quantity, and each time that is left out costs more than all of these.
+    """
+    count, price = len(times), float(series.size)
+    cost, before = np.full((count, count), np.inf), np.full((count, count), -1)
+    for last in range(1, count):
+        at = np.arange(max(0, last - 1 - longest), last)
+        cost[at, last] = np.where(at <= longest, (last - 1) * price, np.inf)  # as the first pair
+        first = np.arange(max(0, at[0] - 1 - longest), last - 1)
+        if len(first) == 0:
+            continue
+        share = (times[at, None] - times[first]) / (times[last] - times[first])
+        departures = _off_line(series[first], series[at, None], series[last], share[..., None])
+        ways = cost[np.ix_(first, at)].T + np.where(np.abs(departures).max(axis=2) <= 1, (departures**2).sum(axis=2), np.inf)
+        ways += price * (last - at - 1)[:, None]
+        best = ways.argmin(axis=1)
+        least = ways[np.arange(len(at)), best]
+        found = np.isfinite(least)
+        cost[at[found], last], before[at[found], last] = least[found], first[best[found]]
+    total = np.where(before >= 0, cost, np.inf) + price * (count - 1 - np.arange(count))
+    total[:, :max(0, count - 1 - longest)] = np.inf
+    if not np.isfinite(total).any():
+        return np.zeros(0, dtype=np.int64)
+    middle, end = (int(one) for one in np.unravel_index(total.argmin(), total.shape))
+    path = [end, middle]
+    while before[middle, end] >= 0:
+        middle, end = int(before[middle, end]), middle
+        path.append(middle)
+    return np.array(path[::-1])

@@ -170,7 +170,7 @@ def _first_is_apical(layer: Layer, labels: Labels, spacing: Floats, apical: Opti
     way = sides.normals[sides.side == FIRST].sum(axis=0) / area[0]
     if apical is None:
         faces = f"faces {_direction(way)} and {_direction(-way)}" if np.linalg.norm(way) > ONE_WAY else "is bent around an inside"
-        raise ValueError(f"apical: which side of the layer is apical is not known; the layer {faces}: give apical = {SIDES}, or an apical marker")
+        raise ValueError(f"apical: which side of the layer is apical is not known; the layer {faces}: give {SIDES}, or an apical marker")
     if apical in ("outside", "inside"):
         if abs(bend) < FLAT:
             raise ValueError(f"apical: \"{apical}\", but the layer is flat; it faces {_direction(way)} and {_direction(-way)}: give one of these")
@@ -179,7 +179,7 @@ def _first_is_apical(layer: Layer, labels: Labels, spacing: Floats, apical: Opti
         raise ValueError(f"apical: {apical!r:.60}; give {SIDES}")
     axis, sign = DIRECTIONS[apical]
     if abs(way[axis]) < ONE_WAY:
-        raise ValueError(f"apical: \"{apical}\", but no side of the layer faces there; give apical = {SIDES}")
+        raise ValueError(f"apical: \"{apical}\", but no side of the layer faces there; give {SIDES}")
     return bool(way[axis] * sign > 0)
 
 

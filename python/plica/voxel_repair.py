@@ -126,7 +126,7 @@ def _tell(labels: Labels, goes: NDArray[np.bool_], hole: NDArray[np.bool_], of: 
         most = int(pieces[np.argmax(size[pieces])])
         name = f" of cell {labels.names[of[most] - 1]}" if of[most] else ""
         labels.remarks.append(f"{len(pieces)} small {one if len(pieces) == 1 else several} given to the surroundings (largest:"
-                              f"{name} {size[most]} voxels at {labels.where(_at(begin[most], shape))})")
+                              f"{name} {size[most]} voxel{'s' * (size[most] > 1)} at {labels.where(_at(begin[most], shape))})")
 
 
 def _fill(numbers: NDArray[Any], voxels: Integers, beyond: int, background: bool = True) -> None:

@@ -12,30 +12,8 @@
 #include "measure/energy_norm.hpp"
 #include "measure/region_shape.hpp"
 #include "mechanics/cell_stress.hpp"
-#include "mechanics/energy.hpp"
-#include "tissue/mirror.hpp"
 
 namespace plica {
-
-// Without new cells and nodes, laws do not depend on the positions.
-CellsApart::CellsApart(const Model& model, const Vectors& positions, const CellSet& cells)
-    : revision_(model.revision), tissue_(model.tissue), kept_(keep_only(tissue_, cells)), volumes_(tissue_) {
-  for (const auto& law : model.laws) laws_.push_back(law->after_change(tissue_, kept_, positions));
-}
-
-Vectors CellsApart::forces(const Model& model, const State& state) const {
-  const Vectors no_velocity(state.positions.size(), Vec3::Zero());
-  Step step = motionless(state, no_velocity);
-  Vectors forces(state.positions.size(), Vec3::Zero());
-  for (std::size_t l = 0; l < laws_.size(); ++l) {
-    const auto internal = model.laws[l]->internal_after_change(state.internals[l], tissue_, kept_, {});
-    step.internal = internal;
-    laws_[l]->add_forces(step, forces);
-  }
-  volumes_.add_forces(state.positions, inherited(kept_, state.multipliers), forces);
-  tissue_.carry_hanging(forces);
-  return forces;
-}
 
 namespace {
 

@@ -11,7 +11,7 @@
 
 #include "measure/reference_run.hpp"
 #include "measure/surface_distance.hpp"
-#include "mechanics/model.hpp"
+#include "mechanics/cells_apart.hpp"
 
 namespace plica {
 
@@ -38,23 +38,6 @@ std::span<const Quantity> quantities();
 const Quantity* quantity_named(std::string_view name);  // null if unknown
 
 enum class Over { mean, max, min, sum, rms };
-
-/// Some cells of a model without the others, with laws of their own.
-class CellsApart {
- public:
-  CellsApart(const Model& model, const Vectors& positions, const CellSet& cells);
-  [[nodiscard]] bool are_of(const Model& model) const { return model.revision == revision_; }
-  /// Return their static force on nodes, nN; nodes, in a state of that model: elasticity, contraction, applied and cell
-  /// pressures. The other cells exert the opposite, except for drag and the shell.
-  [[nodiscard]] Vectors forces(const Model& model, const State& state) const;
-
- private:
-  std::uint64_t revision_;  // of the model
-  Tissue tissue_;
-  TissueChange kept_;  // of its tissue
-  std::vector<std::unique_ptr<Law>> laws_;
-  CellVolumes volumes_;
-};
 
 /// Monitor. The region is looked up at each use, since divisions replace the tissue.
 struct Monitor {

@@ -90,18 +90,10 @@ void divide_laws(Model& model, State& state, const TissueChange& change, const V
 }
 
 void divide_constraints(Model& model, State& state, const TissueChange& change) {
-  std::vector<double> multipliers;
-  std::span<const double> before = state.multipliers;
-  for (std::size_t place = 0; place < model.constraint_count(); ++place) {
-    const Constraint& constraint = model.constraint(place);
-    const auto own = constraint.multipliers_after_division(before.first(constraint.count()), change);
-    multipliers.insert(multipliers.end(), own.begin(), own.end());
-    before = before.subspan(constraint.count());
-  }
+  state.multipliers = multipliers_after(model, state.multipliers, change);
   model.volumes = model.volumes.divided(model.tissue, change);
   for (auto& constraint : model.constraints)
     constraint = constraint->after_change(model.tissue, change, state.positions);
-  state.multipliers = std::move(multipliers);
 }
 
 // Held nodes stay held; a new one is where all nodes that it lies between are.
@@ -201,6 +193,18 @@ void follow_change(Model& model, State& state, const TissueChange& change, const
   divide_holds(model, change);
   divide_obstacles(model, state, change);
   model.revision = ++Model::revisions;
+}
+
+std::vector<double> multipliers_after(const Model& model, std::span<const double> multipliers,
+                                      const TissueChange& change) {
+  std::vector<double> after;
+  for (std::size_t place = 0; place < model.constraint_count(); ++place) {
+    const Constraint& constraint = model.constraint(place);
+    const auto own = constraint.multipliers_after_division(multipliers.first(constraint.count()), change);
+    after.insert(after.end(), own.begin(), own.end());
+    multipliers = multipliers.subspan(constraint.count());
+  }
+  return after;
 }
 
 void settle_growth(Model& model, const State& state) {

@@ -29,6 +29,10 @@ TissueChange divide_cells(Model& model, State& state, std::span<const PlannedDiv
 /// Let model and state follow a change of their tissue, whose positions the state has; `before`: those before it.
 void follow_change(Model& model, State& state, const TissueChange& change, const Vectors& before);
 
+/// Return multipliers after a change, called on the model before it.
+std::vector<double> multipliers_after(const Model& model, std::span<const double> multipliers,
+                                      const TissueChange& change);
+
 /// Take the rest shapes, target volumes and rest areas of growing cells at the time of the state, and drop growth that
 /// has ended. A change of the tissue must follow, from which laws count growth again.
 void settle_growth(Model& model, const State& state);

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "mechanics/cells_apart.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/elasticity/turning_elements.hpp"
 #include "mechanics/energy.hpp"
@@ -169,47 +170,81 @@ TissueChange turn(Model& model, State& state, std::vector<WallTurn>& turns, doub
   return change;
 }
 
+enum class Turning { by_forces, always };
+
+// Leave those of the walls that turn, tried on copies of a model with shapes of the present; return the change of
+// energy.
+double judge(const Model& before, const State& state, std::vector<WallTurn>& turns, double length_um, Turning turning) {
+  while (!turns.empty()) {
+    Model turned(before);
+    State then = state;
+    turn(turned, then, turns, length_um);
+    const Vectors forces = forces_of(turned, then);
+    const auto opening = [&](const WallTurn& one) { return opening_force(turned, one, then.positions, forces); };
+    if (turning == Turning::by_forces && std::erase_if(turns, [&](const auto& one) { return !(opening(one) > 0); }) > 0)
+      continue;
+    if (turns.empty()) break;
+    const double energy = energy_of(turned, then) - energy_of(before, state);
+    if (turning == Turning::always || energy < 0) return energy;
+    turns.erase(std::ranges::min_element(turns, {}, opening));
+  }
+  return 0;
+}
+
+// Cells about walls, and their neighbours: no other cell exerts forces on the columns of the walls or changes its
+// energy if they turn.
+CellSet cells_about(const Sheet& sheet, std::span<const WallTurn> turns) {
+  CellSet about(sheet.cells.size(), false);
+  for (const WallTurn& turn : turns)
+    for (const CellId cell : turn.cells()) {
+      if (!cell.valid()) continue;
+      about[cell.index()] = true;
+      for (const Stop& stop : sheet.cells[cell.index()].ring)
+        if (const CellId one = sheet.walls[stop.wall.index()].beyond(cell); one.valid()) about[one.index()] = true;
+    }
+  return about;
+}
+
+bool joins_distant_cells(const Model& model) {
+  return std::ranges::any_of(model.laws, [](const auto& law) { return law->self_contact() || law->enclosed_fluid(); });
+}
+
+// The same on a part of the tissue where laws join near cells only.
+double judge_in_part(const Model& present, const State& state, std::vector<WallTurn>& turns, double length_um,
+                     Turning turning) {
+  if (joins_distant_cells(present)) return judge(present, state, turns, length_um, turning);
+  const CellsApart part(present, state.positions, cells_about(present.tissue.sheet, turns));
+  std::vector<WallTurn> of_part = turns;
+  for (WallTurn& turn : of_part)
+    for (CellId* cell : {&turn.left, &turn.right, &turn.behind, &turn.ahead}) *cell = part.number_of(*cell);
+  const double energy = judge(part.model(), part.state(present, state), of_part, length_um, turning);
+  std::erase_if(turns, [&](const WallTurn& turn) {
+    return std::ranges::find(of_part, turn.wall, &WallTurn::wall) == of_part.end();
+  });
+  return energy;
+}
+
+std::optional<ExchangeOutcome> change_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
+                                                 double length_um, Turning turning) {
+  if (turns.empty()) return std::nullopt;
+  const std::optional<Model> now = grown(model, model, state.internals, state.time_s);
+  const double energy = judge_in_part(now ? *now : model, state, turns, length_um, turning);
+  if (turns.empty()) return std::nullopt;
+  settle_growth(model, state);
+  TissueChange change = turn(model, state, turns, length_um);
+  return ExchangeOutcome{std::move(change), std::move(turns), energy};
+}
+
 }  // namespace
 
 std::optional<ExchangeOutcome> exchange_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
                                                    double length_um) {
-  if (turns.empty()) return std::nullopt;
-  const std::optional<Model> now = grown(model, model, state.internals, state.time_s);
-  const Model& present = now ? *now : model;
-  while (!turns.empty()) {
-    Model turned(model);
-    settle_growth(turned, state);
-    State then = state;
-    TissueChange change = turn(turned, then, turns, length_um);
-    const Vectors forces = forces_of(turned, then);
-    const auto opening = [&](const WallTurn& one) { return opening_force(turned, one, then.positions, forces); };
-    if (std::erase_if(turns, [&](const WallTurn& one) { return !(opening(one) > 0); }) > 0) continue;
-    if (turns.empty()) break;
-    const double energy = energy_of(turned, then) - energy_of(present, state);
-    if (!(energy < 0)) {
-      turns.erase(std::ranges::min_element(turns, {}, opening));
-      continue;
-    }
-    model = std::move(turned);
-    state = std::move(then);
-    return ExchangeOutcome{std::move(change), std::move(turns), energy};
-  }
-  return std::nullopt;
+  return change_neighbours(model, state, std::move(turns), length_um, Turning::by_forces);
 }
 
 std::optional<ExchangeOutcome> part_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
                                                double length_um) {
-  const std::optional<Model> now = grown(model, model, state.internals, state.time_s);
-  const double before = energy_of(now ? *now : model, state);
-  Model turned(model);
-  settle_growth(turned, state);
-  State then = state;
-  TissueChange change = turn(turned, then, turns, length_um);
-  if (turns.empty()) return std::nullopt;
-  const double energy = energy_of(turned, then) - before;
-  model = std::move(turned);
-  state = std::move(then);
-  return ExchangeOutcome{std::move(change), std::move(turns), energy};
+  return change_neighbours(model, state, std::move(turns), length_um, Turning::always);
 }
 
 std::optional<ExtrusionOutcome> extrude_cells(Model& model, State& state, std::vector<CellId> cells) {

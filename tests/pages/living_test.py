@@ -70,6 +70,9 @@ class Living(unittest.TestCase):
     def test_a_wound_recoils(self):
         self.assertIn("µm wider (its sides recoil)", run("wound.py"))
 
+    def test_tables_of_the_four_hypotheses_are_those_of_their_results(self):
+        run("egg/paper.py", "--check")
+
     def test_outcomes_of_the_egg_have_gradients(self):
         self.assertIn("round.obj: 2392 cells", run("egg/mesh.py", self.folder))
         sys.path.insert(0, str(LIVING / "egg"))

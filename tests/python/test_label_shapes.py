@@ -84,6 +84,25 @@ def test_wrong_labels_are_doubtful_and_links_join_daughters():
     assert np.array_equal(shapes_of(renamed, cells, links=numbers).centres_um, clean.centres_um, equal_nan=True)
 
 
+@pytest.mark.parametrize("how", [
+    "right, gone, right, merged, cut, cut, right",     # taken away one by one, 2 and 6 went and 4 and 5 stayed
+    "gone, cut, right, merged, right, merged, right",  # none was left
+])
+def test_wrong_labels_around_a_gap_are_told_together(how):
+    movie, cells = drawn()
+    label, other = cells.cell_data["label"][5:7].astype(int)
+    images = [image.copy() for image in movie]
+    for image, one in zip(images, how.split(", ")):
+        if one == "merged":
+            image[image == other] = label
+        elif one != "right":
+            upper = np.indices(image.shape)[0] < np.argwhere(image == label)[:, 0].mean()
+            image[(image == label) & (upper | (one == "gone"))] = 999
+    wrong = [one in ("merged", "cut") for one in how.split(", ")]
+    doubtful = shapes_of(images, cells).doubtful
+    assert doubtful[:, 5].tolist() == wrong and doubtful.sum() == sum(wrong)
+
+
 def test_a_wrong_first_frame_leaves_later_ones():
     movie, cells = drawn()
     shapes = shapes_of(movie, cells)
@@ -110,6 +129,22 @@ def test_a_first_label_of_two_cells_is_left_out():
     shapes = shapes_of([first, *movie[1:]], plica.polygons_of_labels(first, PIXEL_UM))
     cell = int(np.flatnonzero(shapes.labels == label)[0])
     assert all(np.isnan(shapes[time]["areas_um2"][cell]) for time in TIMES) and np.isfinite(shapes[3]["areas_um2"]).sum() == len(shapes.labels) - 1
+
+
+def test_a_label_that_goes_on_to_another_cell_is_left_out():
+    """As where two cells are merged in a frame, and one of them is missing from then on."""
+    movie, cells = drawn()
+    right = shapes_of(movie, cells)
+    alike = np.abs(np.log(right.areas_um2[0][:, None] / right.areas_um2[2])) < 0.05
+    near = np.linalg.norm(right.centres_um[0][:, None, :2] - right.centres_um[2][:, :2], axis=2) < 1.5 * np.sqrt(np.median(right.areas_um2[0]))
+    cell, other = np.argwhere(alike & near & ~np.eye(len(alike), dtype=bool))[0]
+    later = [image.copy() for image in movie]
+    for image in later[2:]:
+        image[image == right.labels[cell]] = 999
+        image[image == right.labels[other]] = right.labels[cell]
+    shapes = shapes_of(later, cells)
+    assert shapes.doubtful[:, cell].tolist() == 2 * [True] + 5 * [False]
+    assert all(np.isnan(shapes[time]["centres_um"][cell]).all() for time in TIMES) and np.isfinite(shapes[1]["areas_um2"]).sum() == len(alike) - 2
 
 
 def test_moments_of_labels():

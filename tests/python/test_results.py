@@ -149,13 +149,33 @@ def test_render_of_several_times_and_views(run, tmp_path):
         plica.render(sim, strip=True)
 
 
-def test_movie(run, tmp_path):
-    pytest.importorskip("pyvista")
+class Squares:
+    """In place of Scene, to try encoders without PyVista: squares that turn brighter."""
+
+    def __init__(self, *how):
+        self.brightness = 0
+
+    def range_over(self, source):
+        return 0, 1
+
+    def draw(self, columns, limits):
+        self.brightness += 20
+        return np.full((151, 201, 3), self.brightness, dtype=np.uint8)
+
+
+@pytest.mark.parametrize("scene", ["pyvista", "squares"])
+def test_movie(run, tmp_path, monkeypatch, scene):
     images = pytest.importorskip("imageio.v3")
     pytest.importorskip("imageio_ffmpeg")
+    if scene == "squares":
+        monkeypatch.setattr("plica.pictures.Scene", Squares)
+        monkeypatch.setattr("plica.results.Frame.to_pyvista", lambda frame: None)
+    else:
+        pytest.importorskip("pyvista")
     for name, plugin in (("fold.gif", "pillow"), ("fold.mp4", "FFMPEG")):
         plica.movie(run, tmp_path / name, size=(201, 151), bar=False)
-        assert len(images.imread(tmp_path / name, plugin=plugin)) == len(run.frames)
+        drawn = images.imread(tmp_path / name, plugin=plugin)
+        assert len(drawn) == len(run.frames) and (np.diff(drawn[:, 75, 100, 0].astype(int)) > 5).all() or scene == "pyvista"
     with pytest.raises(ValueError, match=r"\.gif or \.mp4"):
         plica.movie(run, tmp_path / "fold.avi")
     with pytest.raises(plica.FileError, match="cannot be written"):

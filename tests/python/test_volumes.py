@@ -61,7 +61,7 @@ def test_apical_side():
     assert np.median(far) == pytest.approx(17, abs=0.5)
     axis = np.argwhere(np.ones(labels.shape)).reshape(*labels.shape, 3) * 0.5 + origin[::-1]
     assert np.allclose(made(labels, apical=np.linalg.norm(axis, axis=3)).apical, outside.apical)
-    with pytest.raises(ValueError, match="apical is not known; the layer is bent around an inside: give apical = \"outside\" or"):
+    with pytest.raises(ValueError, match="apical is not known; the layer is bent around an inside: give \"outside\" or"):
         plica.tissue_of_labels(labels, HALF)
     with pytest.raises(ValueError, match="no side of the layer faces there"):
         plica.tissue_of_labels(labels, HALF, apical="+z")

@@ -324,7 +324,7 @@ TEST(PolygonKeys, WhatIsWrongIsSaidWithItsKey) {
          "region.r.array: the embryo has no array \"sna\"; set embryo.cell_arrays to a table with this column");
   expect(egg + "[region.r]\nx_um = [-10, 10]\nabove = 2\n", "region.r.above: is not used without array");
   expect(egg + "[region.r]\nangle_deg = [170, 175]\nlength_percent = [0, 0.1]\n",
-         "region.r: contains no cell of the embryo");
+         "region.r: contains no cell of the embryo; change its selectors: cells lie at x -");
   expect(egg + "[contraction.c]\nregion = \"all\"\nedges = \"apical\"\nstiffness_nN_per_um = 1\ndiagonals = true\n",
          "contraction.c.diagonals: cell ");
   expect(egg + "[volume]\nmethod = \"projection\"\n",

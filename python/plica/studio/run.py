@@ -26,7 +26,7 @@ from .frames import Frame, FrameFile
 from .messages import packed
 from .shapes import ends_of_colours, shape_message, values_now
 
-FRAME_APART_S = 0.02  # of wall time, between frames that are kept beside those of the scenario
+FRAME_APART_S = 0.04  # of wall time, between frames that are kept beside those of the scenario
 MOST_KEPT = 64
 INSTANT_S = 1e-6
 
@@ -150,7 +150,6 @@ class StudioRun:
     def _take_step(self, sim: Simulation) -> None:
         if not sim._core.step(math.inf):
             return
-        self._keep_state(sim)
         self.rows.append(self._row(sim))
         texts = [*sim._core.warnings]
         if (sim.measures.get("self_intersections") or 0) > 0:
@@ -293,6 +292,7 @@ class StudioRun:
         if last_s >= sim.time_s or self.file.is_full or not is_due:
             return
         self._shown_at = now
+        self._keep_state(sim)
         self._follow_shape(sim)
         self.file.add(sim.time_s, len(self.shapes) - 1, sim.positions.astype("f4"), values_now(sim))
         self._told()

@@ -130,10 +130,12 @@ void Cortex::inherit_faces(const Origins& origins, const Cortex& before, std::sp
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const std::vector<std::size_t>& from = all[f];
     stretches.push_back(first[f] > 0 ? first[f] / rest_areas_[f] : origins.mean(from, stretches_before));
-    // In a part of a tissue, the neighbour that is left out keeps its half of a wall.
-    if (from.empty() || faces_[f].beyond || !before.faces_[from.front()].beyond) continue;
-    faces_[f].share *= 0.5;
-    strengths_[f] *= 0.5;
+    // In a part of a tissue, the neighbour that is left out keeps its half of a wall, also when the part changes.
+    if (from.empty() || faces_[f].beyond) continue;
+    const Face& origin = before.faces_[from.front()];
+    const double left = origin.beyond ? 0.5 : origin.share / faces_[f].share;
+    faces_[f].share *= left;
+    strengths_[f] *= left;
   }
   take_stretches(std::move(stretches));
 }

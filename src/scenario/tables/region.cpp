@@ -167,6 +167,15 @@ bool selected(const RegionInput& region, std::size_t id, const Cell& cell, const
   return inside(region.x_um, centre.x()) && inside(region.y_um, centre.y()) && inside(region.z_um, centre.z());
 }
 
+/// "x 3 to 58, y -4 to 12, z 0 to 5 um": where centres of cells are.
+std::string span_of_cells(const Tissue& tissue) {
+  Eigen::AlignedBox3d box;
+  for (const Cell& cell : tissue.cells) box.extend(cell_centre(cell, tissue.rest_positions));
+  const Vec3 low = box.min(), high = box.max();
+  return fmt::format("x {:.3g} to {:.3g}, y {:.3g} to {:.3g}, z {:.3g} to {:.3g} um", low.x(), high.x(), low.y(),
+                     high.y(), low.z(), high.z());
+}
+
 /// Remarks once on cells without a value of an array.
 void note_missing(const std::string& name, const CellArray& values, std::vector<std::string>& remarks) {
   const auto missing = std::ranges::count_if(values, [](double value) { return std::isnan(value); });
@@ -256,7 +265,9 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
     const CellSet& set = resolve(name);
     if (std::ranges::find(set, true) == set.end())
       errors.push_back(diagnostic_at(scenario, "region." + name, "contains no cell of the embryo",
-                                     "change its selectors; `plica mesh` writes the positions of cells"));
+                                     fmt::format("change its selectors: cells lie at {}; `plica mesh` writes the "
+                                                 "positions of all",
+                                                 span_of_cells(tissue))));
   }
 }
 

@@ -4,7 +4,6 @@
 #include "mechanics/active/cortex.hpp"
 #include "mechanics/division.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
-#include "mechanics/surroundings.hpp"
 #include "solver/step/newton_stepper.hpp"
 #include "support/cortices.hpp"
 #include "support/law_checks.hpp"
@@ -158,51 +157,6 @@ TEST(Fibres, ShortenABlockAlongOneAxis) {
       EXPECT_NEAR(b, c, 1e-8);
     }
   }
-}
-
-// How far the edges of a cut square go apart in a first short step, along and across.
-std::pair<double, double> recoil(double share) {
-  Model model(build_block({.length_um = 180, .width_um = 180, .cell_height_um = 20, .cells = {9, 9, 1}}));
-  const Tissue& tissue = model.tissue;
-  for (std::size_t n = 0; n < tissue.node_count(); ++n)
-    if (tissue.rest_positions[n].head<2>().cwiseAbs().maxCoeff() > 89) model.held[n] = {true, true, true};
-  model.laws.push_back(
-      std::make_unique<NeoHookean>(tissue, std::vector<NeoHookeanMaterial>(tissue.elements.size(), {0.1, 0})));
-  model.laws.push_back(std::make_unique<SurfaceDrag>(tissue, 1));
-  CellPattern pattern(every(tissue));
-  CellSet cut(tissue.cells.size(), false);
-  for (std::size_t c = 0; c < cut.size(); ++c) {
-    const std::size_t e = tissue.cells[c].first_element.index();
-    Vec3 middle = Vec3::Zero();
-    for (const NodeId node : tissue.elements[e]) middle += 0.125 * tissue.rest_positions[node.index()];
-    cut[c] = middle.head<2>().cwiseAbs().maxCoeff() < 30;
-  }
-  pattern.ablations.emplace_back(cut, 0, 0, std::nullopt);
-  for (const CellSide side : {CellSide::apical, CellSide::basal})
-    model.laws.push_back(
-        std::make_unique<Cortex>(tissue, pattern, CortexRule{.side = side, .tension = 1e-3, .fibres = {share, 0, {}}}));
-  NewtonStepper stepper(model, {.force = 1e-13});
-  const State before = rest_state(model);
-  State after;
-  EXPECT_TRUE(stepper.advance(before, 1, true, after).converged());
-  std::pair<double, double> apart{0, 0};
-  for (std::size_t n = 0; n < tissue.node_count(); ++n) {
-    const Vec3 &X = tissue.rest_positions[n], u = after.positions[n] - before.positions[n];
-    const double x = std::abs(X.x()), y = std::abs(X.y());
-    if (std::abs(x - 30) < 1 && y < 11) apart.first += u.x() * (X.x() > 0 ? 1 : -1);
-    if (std::abs(y - 30) < 1 && x < 11) apart.second += u.y() * (X.y() > 0 ? 1 : -1);
-  }
-  return apart;
-}
-
-// The recoil is linear in the tensions: along it is p along - r across, across it is p across - r along.
-TEST(Fibres, MakeACutRecoilMoreAlongTheirAxis) {
-  const auto even = recoil(0), uneven = recoil(0.75), uniaxial = recoil(1);
-  EXPECT_GT(even.first, 0);
-  EXPECT_NEAR(even.first, even.second, 1e-4 * even.first);
-  EXPECT_GT(uneven.first, 2 * uneven.second);
-  EXPECT_NEAR(uneven.first + uneven.second, 0.5 * 1.25 * (even.first + even.second), 1e-3 * even.first);
-  EXPECT_NEAR(uneven.first - uneven.second, 0.75 * (uniaxial.first - uniaxial.second), 1e-3 * even.first);
 }
 
 // Daughters have their mother's fibres.

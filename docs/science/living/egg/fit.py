@@ -1,7 +1,7 @@
 """Fit a hypothesis of hypotheses.toml to its targets by slopes, and print its misfit and evidence.
 
-Usage: fit.py HYPOTHESIS FOLDER [--runs 8]. It starts from the row of the hypothesis in starts.csv. FOLDER keeps all runs: the same command
-continues after an interruption, or with more runs.
+Usage: fit.py HYPOTHESIS FOLDER [--runs 8] [--early]. It starts from the row of the hypothesis in starts.csv; with --early, the third round, from that
+in early-starts.csv, to `early` targets. FOLDER keeps all runs: the same command continues after an interruption, or with more runs.
 Writes keys.csv and targets.csv (Fit.write), and evidence.json. Needs egg.obj (mesh.py).
 """
 import argparse
@@ -103,11 +103,16 @@ class Egg:
         return total
 
 
-def experiments(scenario):
+def targets_of(early):
+    """Targets of hypotheses.toml, of the third round if `early`."""
+    return [target | target["early"] if early and "early" in target else target for target in PLAN["target"]]
+
+
+def experiments(scenario, early=False):
     """Scenario without and with light, each with its targets."""
     egg = Egg(scenario)
     found = {}
-    for target in PLAN["target"]:
+    for target in targets_of(early):
         outcome = getattr(egg, target["outcome"], target["outcome"])
         of_one = found.setdefault(target.get("light_min"), {})
         of_one.setdefault(outcome, {})[target["at_min"]] = (target["value"], target["sd"])
@@ -146,19 +151,25 @@ def promise(fit, away, slopes, low, high):
     return float(residuals @ residuals - ((residuals + rows @ step) ** 2).sum())
 
 
+def problem_of(name, early):
+    """What is fitted, to which targets, and what is known beforehand: arguments of plica.fit."""
+    scenario, bounds = scenario_of(name)
+    with (HERE / ("early-starts.csv" if early else "starts.csv")).open() as file:
+        start = next(row for row in csv.DictReader(file) if row["hypothesis"] == name)
+    scenario.update({key: float(start[key]) for key in bounds})
+    return experiments(scenario, early), bounds, {key: prior(*ends) for key, ends in bounds.items()}
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("hypothesis", choices=list(PLAN["hypothesis"]))
     parser.add_argument("folder", type=Path)
     parser.add_argument("--runs", type=int, default=8)
+    parser.add_argument("--early", action="store_true")
     options = parser.parse_args()
-    scenario, bounds = scenario_of(options.hypothesis)
-    with (HERE / "starts.csv").open() as file:
-        start = next(row for row in csv.DictReader(file) if row["hypothesis"] == options.hypothesis)
-    scenario.update({key: float(start[key]) for key in bounds})
+    tests, bounds, priors = problem_of(options.hypothesis, options.early)
     warnings.simplefilter("ignore")
-    fit = plica.fit(experiments(scenario), of=bounds, priors={key: prior(*ends) for key, ends in bounds.items()}, runs=options.runs,
-                    tolerance=TOLERANCE, folder=options.folder, progress=True)
+    fit = plica.fit(tests, of=bounds, priors=priors, runs=options.runs, tolerance=TOLERANCE, folder=options.folder, progress=True)
     found = {"hypothesis": options.hypothesis, **evidence(fit, bounds), "values": fit.values,
              "targets": [[one.scenario, str(one.outcome), one.at_min, one.value, one.sd, one.found] for one in fit.misses]}
     (options.folder / "evidence.json").write_text(json.dumps(found, indent=1) + "\n")
