@@ -49,8 +49,9 @@ def record(
     at_min : float or iterable of float
         Times at which outcomes are wanted, minutes. Steps end on them.
     strengths : mapping of str to array_like of float, shape (cells,), optional
-        Factors, 0 or more, on the strengths of cells in contractions and cortices (``"cortex.apical"``), and on the stiffness of
-        cells (``"elasticity"``): the corotational or neo-Hookean one, except dilatation within cells of several elements.
+        Factors, 0 or more, on the strengths of cells in contractions and cortices (``"cortex.apical"``), on the rates of growth
+        (``"growth.NAME"``), and on the stiffness of cells (``"elasticity"``): the corotational or neo-Hookean one, except dilatation
+        within cells of several elements.
     energies : dict of str to LocalEnergy, optional
         Force laws by name, as for `Simulation`.
     threads : int
@@ -176,7 +177,7 @@ class Tape:
         of : str or iterable of str
             Key of the scenario with a number (``"cortex.apical.tension_mN_per_m"``), or number of a `LocalEnergy`
             (``"energy.springs.k"``; if it differs between groups, a factor on all), or several. With ``by="cell"``, one contraction or
-            cortex (``"cortex.apical"``), or ``"elasticity"`` for stiffnesses.
+            cortex (``"cortex.apical"``), a growth (``"growth.NAME"``), or ``"elasticity"`` for stiffnesses.
         by : "cell", optional
             For the derivative by a factor on the strength of each cell, 1 for the scenario's.
         at_min : float or iterable of float, optional
@@ -196,8 +197,8 @@ class Tape:
 
         Notes
         -----
-        The cost is about that of the run, for any number of cells, and two evaluations of forces per key and step. After cells
-        have divided or exchanged neighbours, each key, or each cell, costs about 0.6 of a run.
+        The cost is about that of the run, for any number of cells, and two evaluations of forces per key and step. For growth, and
+        after cells have divided or exchanged neighbours, each cell, or each key, costs about 0.6 of a run.
         """
         if not isinstance(of, str):
             of = texts_of(of, "of")

@@ -39,7 +39,7 @@ void add_viscous_gradient(const Law& law, const Step& step, std::span<const Vec3
 std::unique_ptr<Law> with_strengths(const Law& law, std::span<const double> factors) {
   std::unique_ptr<Law> scaled = law.derivatives().with_strengths(factors);
   if (!scaled)
-    throw UsageError(law.label() + ": has no strengths of cells; choose a contraction, a cortex or elasticity");
+    throw UsageError(law.label() + ": has no strengths of cells; choose a contraction, a cortex, growth or elasticity");
   scaled->set_label(law.label());
   return scaled;
 }

@@ -64,6 +64,8 @@ class LawDerivatives {
 
   /// Return the law with the strengths of its cells times these factors; null for laws without strengths.
   [[nodiscard]] virtual std::unique_ptr<Law> with_strengths(std::span<const double> /*factors*/) const { return {}; }
+  /// Whether strengths change rest shapes, target volumes and so forces of other laws, instead of forces of this law.
+  [[nodiscard]] virtual bool strengths_change_cells() const { return false; }
 
   /// Return the law as recorded runs have it, if in others its memory is a step function of positions; else null.
   [[nodiscard]] virtual std::unique_ptr<Law> smooth() const { return {}; }

@@ -73,7 +73,13 @@ CellGrowth::CellGrowth(const Tissue& tissue, CellPattern pattern, GrowthRule rul
 
 const LawDerivatives& CellGrowth::derivatives() const {
   if (followed_.is_used()) refuse_gradient("growth that follows a signal has no gradient; remove follow");
-  return static_derivatives();
+  return *this;
+}
+
+std::unique_ptr<Law> CellGrowth::with_strengths(std::span<const double> factors) const {
+  auto law = std::make_unique<CellGrowth>(*this);
+  for (std::size_t c = 0; c < factors.size(); ++c) law->pattern_.strengths[c] *= factors[c];
+  return law;
 }
 
 double CellGrowth::active_s(CellId cell, std::span<const double> internal, double time_s) const {

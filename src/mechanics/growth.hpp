@@ -13,7 +13,7 @@
 #include "mechanics/active/cell_pattern.hpp"
 #include "mechanics/active/followed_signal.hpp"
 #include "mechanics/active/program.hpp"
-#include "mechanics/law.hpp"
+#include "mechanics/derivatives.hpp"
 
 namespace plica {
 
@@ -54,7 +54,7 @@ struct GrowthRule {
 
 /// Growth that the scenario prescribes: a law without forces that remembers for how long each cell has been active
 /// since the last change of the tissue, which takes the shapes of then for those of the model.
-class CellGrowth final : public Law {
+class CellGrowth final : public Law, public LawDerivatives {
  public:
   CellGrowth(const Tissue& tissue, CellPattern pattern, GrowthRule rule);
 
@@ -67,6 +67,9 @@ class CellGrowth final : public Law {
 
   /// NoGradient where cells follow a signal.
   [[nodiscard]] const LawDerivatives& derivatives() const override;
+  /// Factors on rates of growth.
+  [[nodiscard]] std::unique_ptr<Law> with_strengths(std::span<const double> factors) const override;
+  [[nodiscard]] bool strengths_change_cells() const override { return true; }
 
   void grow(std::span<const double> internal, double time_s, std::vector<GrowthTensor>& tensors) const override;
   [[nodiscard]] bool is_growing(std::span<const double> internal, double time_s) const override;

@@ -203,7 +203,12 @@ std::optional<RunGradient> Tape::gradient(const OutcomeGradient& outcome, const 
   if (!wanted.law.empty()) {
     input.law = place_of_law(*solved_, wanted.law);
     const auto unscaled = unscaled_.find(*input.law);
-    if (unscaled != unscaled_.end()) input.unscaled_law = unscaled->second.get();
+    if (unscaled != unscaled_.end()) {
+      input.unscaled_law = unscaled->second.get();
+      const std::vector<double>& factors = strengths_.at(wanted.law);
+      for (std::size_t c = 0; c < solved_->tissue.cells.size(); ++c)
+        input.factors.push_back(factors[mirror_.is_used() ? mirror_.origins[c].index() : c]);
+    }
   }
   if (!outcome.empty() && part_of(outcome.rbegin()->first).change) return gradient_by_tangents(outcome, wanted);
   std::optional<RunGradient> gradient =
@@ -221,7 +226,7 @@ std::optional<RunGradient> Tape::gradient_by_tangents(const OutcomeGradient& out
   const std::size_t cells = wanted.law.empty() ? 0 : solved_->tissue.cells.size();
   std::vector<ModelPair> of_cells;
   for (std::size_t c = 0; c < cells; ++c) {
-    constexpr double change = 1e-3;  // forces are proportional to strengths
+    constexpr double change = 1e-4;
     const std::size_t law = place_of_law(*solved_, wanted.law);
     const auto changed = [&](double by) {
       const auto given = strengths_.find(wanted.law);

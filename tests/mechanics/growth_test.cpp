@@ -27,6 +27,16 @@ TEST(ProgramIntegral, IsThatOfItsActivity) {
   EXPECT_EQ(program.integral(20, 30), (0.5 + 1.25) / 2 * 10);
 }
 
+TEST(CellGrowth, FactorsOfCellsScaleTheirRates) {
+  const Tissue tissue = build_block(two_cells);
+  const CellGrowth law(tissue, CellSet{true, true}, {0.01, {0.6, 0.3, 0.1}});
+  std::vector<GrowthTensor> tensors;
+  with_strengths(law, std::vector<double>{2, 0.5})->grow(law.first_internal(tissue), 20, tensors);
+  EXPECT_NEAR(tensors.at(0).volume, std::exp(0.4), 1e-14);
+  EXPECT_NEAR(tensors.at(1).volume, std::exp(0.1), 1e-14);
+  EXPECT_NEAR(tensors[0].G.determinant(), tensors[0].volume, 1e-14);
+}
+
 TEST(CellGrowth, StretchesAlongTheAxesOfTheCellAndTablesMultiply) {
   const Tissue tissue = build_block(two_cells);
   const CellGrowth law(tissue, CellSet{true, true}, {0.01, {0.6, 0.3, 0.1}});

@@ -162,6 +162,52 @@ def test_stiffness_of_cells_agrees_with_differences(model):
     assert by_cell @ factors == pytest.approx(by_key, rel=1e-6)
 
 
+def growing(**changes):
+    """Return a block that grows and flows, of which each cell grows by another factor."""
+    scenario = plica.Scenario(BLOCK)
+    scenario.update({"growth.all": {"region": "all", "rate_per_h": 60, "in_plane": 0.8}, "cortex.walls": {
+        "region": "all", "faces": "lateral", "stiffness_mN_per_m": 2, "relaxation_min": 0.2}, **changes})
+    return scenario, {"growth.all": [1.3, 0.7, 1.1, 0.8, 1.2, 0.9]}
+
+
+def test_growth_of_cells_agrees_with_differences():
+    scenario, factors = growing()
+    tape = plica.record(scenario, strengths=factors)
+    for check in plica.check_gradient(tape, moved(tape), of="growth.all", by="cell"):
+        assert check.error < 1e-6, check
+    by_cell = tape.gradient(moved(tape), of="growth.all", by="cell")
+    again = plica.record(scenario, strengths=factors, threads=2).gradient(moved(tape), of="growth.all", by="cell")
+    assert np.array_equal(by_cell, again)
+    # All together are the rate.
+    assert by_cell @ factors["growth.all"] == pytest.approx(60 * tape.gradient(moved(tape), of="growth.all.rate_per_h"), rel=1e-6)
+    # Where no cell grows, too.
+    assert plica.record(scenario, strengths={"growth.all": np.zeros(6)}).gradient("top.area_um2", of="growth.all", by="cell").min() > 0
+
+
+def test_growth_of_cells_through_division_agrees_with_differences():
+    scenario, factors = growing(**{"division.all": {"region": "all", "at_s": 30, "growth_s": 18}})
+    tape = plica.record(scenario, strengths=factors)
+    assert tape._core.changes > 0
+    checks = plica.check_gradient(tape, "top.area_um2", of="growth.all", by="cell")
+    assert max(check.error for check in checks) < 1e-6, checks
+
+
+def test_growth_of_cells_through_exchange_agrees_with_differences():
+    scenario = plica.Scenario("convergent-extension")
+    scenario.update({**SHEET, "embryo.cell_count": 20, "embryo.length_um": 20, "embryo.width_um": 20})
+    tape = plica.record(scenario, until_min=1)
+    assert tape._core.changes > 0
+    checks = plica.check_gradient(tape, "length.position_um", of="growth.all", by="cell")
+    assert max(check.error for check in checks) < 1e-6, checks
+
+
+def test_growth_that_follows_a_signal_is_refused():
+    scenario, factors = growing(**{"signal.u": {"decay_per_min": 1, "initial": 1}})
+    scenario["growth.all.follow"] = {"signal": "u", "from": 0, "to": 1}
+    with pytest.raises(ValueError, match="growth that follows a signal has no gradient; remove follow"):
+        plica.record(scenario, strengths=factors)
+
+
 def test_one_way_back_gives_all_keys(tape):
     keys = ["cortex.apical.tension_mN_per_m", "elasticity.young_modulus_Pa"]
     both = tape.gradient("top.area_um2", of=keys)
@@ -236,7 +282,7 @@ WRONG = [
     (dict(outcome="top.area_um2", of="cortex.apical.region"), 'cortex.apical.region: \'all\'; choose a key that has a number'),
     (dict(outcome="top.area_um2", of="cortex.apical.stiffness_mN_per_m"), "is 0, where its change has no scale"),
     (dict(outcome="top.area_um2", of="cortex.apica", by="cell"), 'no law "cortex.apica"; laws: '),
-    (dict(outcome="top.area_um2", of="drag", by="cell"), "drag: has no strengths of cells; choose a contraction, a cortex or elasticity"),
+    (dict(outcome="top.area_um2", of="drag", by="cell"), "drag: has no strengths of cells; choose a contraction, a cortex, growth or elasticity"),
     (dict(outcome="top.area_um2", of=["cortex.apical"], by="cell"), "give one contraction or cortex"),
     (dict(outcome="top.area_um2", of="cortex.apical", by="face"), 'by: \'face\'; give "cell"'),
     (dict(outcome="top.area_um2", of="elasticity.young_modulus_Pa", at_min=0.7), "no step ends at 0.7 min"),

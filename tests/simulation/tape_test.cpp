@@ -182,6 +182,23 @@ TEST(Tape, GradientsByStiffnessOfCellsAgreeWithDifferences) {
     expect_gradient({pulled_block(), overrides, {{"elasticity.young_modulus_Pa", 500}}, "elasticity", 3});
 }
 
+// Growth of cells: target volumes, rest shapes, and rest areas and memory of walls of two cells.
+TEST(Tape, GradientsByGrowthOfCellsAgreeWithDifferences) {
+  const ScenarioSource growing = pulled_block(R"([growth.all]
+region = "all"
+rate_per_h = 100
+in_plane = 0.9
+[cortex.walls]
+region = "all"
+faces = "lateral"
+tension_mN_per_m = 2
+stiffness_mN_per_m = 2
+)");
+  for (const char* change :
+       {"embryo.elements_per_cell=[1,1,2]", "embryo.mirror=[\"y\"]", "cortex.walls.relaxation_min=0.05"})
+    expect_gradient({growing, {change}, {{"growth.all.rate_per_h", 100}}, "growth.all", 4});
+}
+
 // Before the first exchange: walls by their direction, with noise; interiors that flow.
 TEST(Tape, GradientsOfPolarTensionsAgreeWithDifferences) {
   expect_gradient({find_scenario("convergent-extension"),

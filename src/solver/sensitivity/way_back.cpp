@@ -117,7 +117,10 @@ class WayBack {
     model_.tissue.carry_hanging(by_end);
     if (parallel_squared_norm(by_end) > 0) {
       const ExactSolve::Solution solution = solver_.solve(step, at, {by_end}, input_.tolerance);
-      add_parameters({run_, n, solution, on_obstacles(step, at, by_end), internals_, signals});
+      const Vectors borne = on_obstacles(step, at, by_end);
+      const StepAdjoint adjoint{run_, n, solution, borne, internals_, signals};
+      add_parameters(adjoint);
+      if (strengths_change_cells()) add_strengths(adjoint);
       for_gradients([&](const LawDerivatives& law, const Step& law_step, std::size_t l, const BeginningGradient& to) {
         law.add_force_gradient(law_step, solution.positions, to);
         if (input_.law != l) return;
@@ -178,7 +181,7 @@ class WayBack {
     return input_.unscaled_law->grown(step.grown->tissue, elements, tensors);
   }
   [[nodiscard]] Vectors on_obstacles(const Step& step, const Iterate& at, const Vectors& by_end) const {
-    if (input_.parameters.empty() || !touches_obstacles(at)) return {};
+    if ((input_.parameters.empty() && !strengths_change_cells()) || !touches_obstacles(at)) return {};
     return solver_.unbalanced(step, at, by_end);
   }
   void add_parameters(const StepAdjoint& adjoint) {
@@ -187,6 +190,26 @@ class WayBack {
       gradient_.by_parameter[p] +=
           (along_adjoint(*pair.more, adjoint) - along_adjoint(*pair.less, adjoint)) / pair.difference;
     }
+  }
+
+  [[nodiscard]] bool strengths_change_cells() const {
+    return input_.law && model_.laws[*input_.law]->derivatives().strengths_change_cells();
+  }
+  /// Add derivatives by strengths that change rest shapes and targets, by differences cell after cell.
+  void add_strengths(const StepAdjoint& adjoint) {
+    constexpr double change = 1e-4;
+    const Law& unscaled = input_.unscaled_law ? *input_.unscaled_law : *model_.laws[*input_.law];
+    std::vector<double> factors = input_.factors;
+    factors.resize(gradient_.by_strength.size(), 1.0);
+    Model changed = model_;
+    const auto along = [&](double& factor, double by) {
+      const double before = std::exchange(factor, factor + by);
+      changed.laws[*input_.law] = with_strengths(unscaled, factors);
+      factor = before;
+      return along_adjoint(changed, adjoint);
+    };
+    for (std::size_t c = 0; c < factors.size(); ++c)
+      gradient_.by_strength[c] += (along(factors[c], change) - along(factors[c], -change)) / (2 * change);
   }
 
   const Model& model_;

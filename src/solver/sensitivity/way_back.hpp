@@ -43,6 +43,9 @@ struct GradientInput {
   std::optional<std::size_t> law = {};  // index of the law of which the strengths of cells are parameters
   // The law with strengths of factor 1, if not that of the model.
   const Law* unscaled_law = nullptr;
+  // Present strengths of cells, where they do not act by forces of the law (LawDerivatives::strengths_change_cells);
+  // empty: 1.
+  std::vector<double> factors = {};
   double tolerance = 1e-9;  // relative, of linear solves
   std::function<bool()> stop_requested = {};
 };
