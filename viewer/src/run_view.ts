@@ -151,6 +151,7 @@ export class RunView {
     const context = this.canvas.getContext("2d")!;
     context.scale(screenRatio, screenRatio);
     this.paint(context, ratio, title);
+    this.canvas.dataset.fineness = String(ratio);
     this.moved = false;
   }
 

@@ -21,15 +21,16 @@ export function report(names, file) {
   execFileSync(plica, ["report", ...names.map((name) => join(folder, name)), "--out", join(folder, file)]);
 }
 
-export function launch({ webgl = true } = {}) {
+/** `composes: false`: the page is drawn without WebGL, as in a browser without a graphics card, which costs much less. */
+export function launch({ webgl = true, composes = true } = {}) {
   if (isFirefox)
     return firefox.launch({
       channel: "moz-firefox", executablePath: process.env.FIREFOX ?? "/usr/bin/firefox-esr", headless: false,
       firefoxUserPrefs: { "webgl.force-enabled": webgl, "webgl.disabled": !webgl },
     });
   const quiet = ["--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
-  // As on a machine without a graphics card: the processor draws the scene, and the page without a detour over WebGL.
-  const drawing = webgl ? ["--disable-gpu", "--enable-unsafe-swiftshader"] : ["--disable-3d-apis"];
+  const software = composes ? ["--use-gl=angle", "--use-angle=swiftshader"] : ["--disable-gpu"];
+  const drawing = webgl ? [...software, "--enable-unsafe-swiftshader"] : ["--disable-3d-apis"];
   return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: [...quiet, ...drawing] });
 }
 
@@ -99,8 +100,12 @@ export async function saved(page, button) {
 
 // The pixels of a part of the page: rgb(x, y) in CSS pixels.
 export async function pixels(page, selector) {
-  await page.waitForTimeout(300); // a picture that stands still is drawn once more, finely
   await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  await page.waitForTimeout(300);
+  await page.waitForFunction((selector) => { // a picture that stands still is drawn once more, finely
+    const { fineness } = document.querySelector(selector).dataset;
+    return fineness === undefined || Number(fineness) > 1;
+  }, selector, { timeout: 5000 }).catch(() => {});
   const png = (await page.locator(selector).first().screenshot()).toString("base64");
   const { width, height, data } = await page.evaluate(async (base64) => {
     const image = new Image();
