@@ -13,7 +13,7 @@ const large = process.env.LARGE ?? "drosophila-living"; // runs while it is look
 const median = (numbers) => [...numbers].sort((a, b) => a - b)[Math.floor(numbers.length / 2)];
 const seconds = (since) => (performance.now() - since) / 1000;
 
-const browser = await launch({ composes: false });
+const browser = await launch();
 let server;
 let page;
 

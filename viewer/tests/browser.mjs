@@ -21,16 +21,15 @@ export function report(names, file) {
   execFileSync(plica, ["report", ...names.map((name) => join(folder, name)), "--out", join(folder, file)]);
 }
 
-/** `composes: false`: the page is drawn without WebGL, as in a browser without a graphics card, which costs much less. */
-export function launch({ webgl = true, composes = true } = {}) {
+export function launch({ webgl = true } = {}) {
   if (isFirefox)
     return firefox.launch({
       channel: "moz-firefox", executablePath: process.env.FIREFOX ?? "/usr/bin/firefox-esr", headless: false,
       firefoxUserPrefs: { "webgl.force-enabled": webgl, "webgl.disabled": !webgl },
     });
   const quiet = ["--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
-  const software = composes ? ["--use-gl=angle", "--use-angle=swiftshader"] : ["--disable-gpu"];
-  const drawing = webgl ? [...software, "--enable-unsafe-swiftshader"] : ["--disable-3d-apis"];
+  // As on a machine without a graphics card: the processor draws the scene, and the page without a detour over WebGL.
+  const drawing = webgl ? ["--disable-gpu", "--enable-unsafe-swiftshader"] : ["--disable-3d-apis"];
   return chromium.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: [...quiet, ...drawing] });
 }
 
