@@ -34,8 +34,8 @@ inline void go_on_by_bytes(Simulation& fresh, const RunMemory& memory) {
   fresh.go_on_from(std::move(checkpoint.run));
 }
 
-/// Runs that continue from every nth of these moments, from the one with number `first` on, with one to three threads in
-/// turn, end where the whole run did.
+/// Runs that continue from every nth of these moments, from the one with number `first` on, with one to three threads
+/// in turn, end where the whole run did.
 inline void expect_to_end_alike(const Scenario& scenario, const Simulation& whole,
                                 const std::vector<RunMemory>& moments, std::size_t first, std::size_t every) {
   int resumed = 0;
