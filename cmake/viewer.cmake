@@ -23,7 +23,7 @@ add_custom_command(OUTPUT ${report_template} ${study_template} ${studio_page}
   DEPENDS ${installed} ${viewer_dir}/build.mjs ${viewer_sources}
   COMMENT "Bundling the reports' pages" VERBATIM)
 add_custom_target(report_template DEPENDS ${report_template} ${study_template} ${studio_page})
-add_dependencies(plica_core report_template)
+add_dependencies(plica_outer report_template)
 set_source_files_properties(${PROJECT_SOURCE_DIR}/src/show/report.cpp PROPERTIES
   COMPILE_DEFINITIONS "PLICA_REPORT_TEMPLATE=\"${report_template}\";PLICA_STUDY_TEMPLATE=\"${study_template}\""
   OBJECT_DEPENDS "${report_template};${study_template}")

@@ -1,21 +1,24 @@
 """Exchanges of neighbours of one flat sheet in plica and in tyssue: their number, and their order (docs/developers/sheets.md).
 
-Usage: tyssue_exchange.py plica FILE.npz [--cells N]           with the package plica of PYTHONPATH, then
-       tyssue_exchange.py tyssue FILE.npz [--rule-of-plica]  with a Python that has tyssue, NumPy, SciPy and pandas.
+Usage: tyssue_exchange.py plica [--cells N] [--end-s S] [--seed K] FILE.npz   with the package plica of PYTHONPATH, then
+       tyssue_exchange.py tyssue [--rule-of-plica] FILE.npz ...  with a Python that has tyssue, scikit-image, NumPy, SciPy, pandas.
 
 A free sheet (80 cells, or N) relaxes under line tensions that are constant in time and differ between pairs of cells (log-normal).
+The order of events is compared within each sheet, over all sheets together: Kendall's tau of the times of pairs of cells that part in
+both programs, and how often random orders reach it. Orders agree (set before the first run) if tau >= 0.5 and p < 0.01.
 plica: lateral cortices, factors by Simulation.set_wall_factors, soft cells of fixed volume. tyssue: the same tensions times the
 height of cells, areas kept by elasticity; a vertex has the drag of half a cell, so nothing is fitted. In both, an edge shorter than
 0.35 µm that shrinks turns to 0.6 µm, and cells that meet have the mean tension. In plica, and by its rule in tyssue, it turns only
 if forces then lengthen the new edge and energy falls; else it waits for 5 s.
 """
-import sys
+import argparse
+from itertools import combinations
 
 import numpy as np
 
 HEIGHT, TENSION, DRAG = 10.0, 0.5, 0.14  # µm, nN/µm, nN s/µm³: of one surface
 BELOW, NEW, SPREAD, AGAIN_S = 0.35, 0.6, 0.6, 5.0
-END_S = {"plica": 600.0, "tyssue": 60.0}
+END_S = 60.0
 
 
 def pairs_of(rows):
@@ -40,10 +43,10 @@ def apical_polygons(simulation):
     return polygons
 
 
-def by_plica(path, cells):
+def by_plica(path, cells, end_s, seed):
     import plica
 
-    seed, side = 1, float(np.sqrt(36.45 * cells))
+    side = float(np.sqrt(36.45 * cells))
     simulation = plica.Simulation({
         "embryo": {"shape": "sheet", "length_um": side, "width_um": side, "cell_count": cells, "cell_height_um": HEIGHT, "seed": seed},
         "elasticity": {"model": "neo-hookean", "young_modulus_Pa": 20, "poisson_ratio": 0, "relaxation_s": 12, "corner_barrier_Pa": 10},
@@ -52,7 +55,7 @@ def by_plica(path, cells):
         "cortex": {"lateral": {"region": "all", "faces": "lateral", "tension_mN_per_m": TENSION},
                    "apical": {"region": "all", "tension_mN_per_m": 0.39},
                    "basal": {"region": "all", "faces": "basal", "tension_mN_per_m": 0.39}},
-        "time": {"end_s": END_S["plica"], "max_step_s": 5},
+        "time": {"end_s": end_s, "max_step_s": 5},
         "stop": {"at_equilibrium": False},
         "measure": {"sets": ["neighbours"]},
     }, threads=1)
@@ -156,13 +159,11 @@ class TyssueSheet:
         return sorted(pair for pair in set(pairs) - set(self.pairs) if pair[0] >= 0)
 
 
-def by_tyssue(path, by_rule_of_plica):
-    from scipy.stats import spearmanr
-
-    data = np.load(path, allow_pickle=True)
+def events_of_tyssue(data, by_rule_of_plica):
+    """Return the time at which each pair of cells parts, s, and the number of short edges that shrink at the end."""
     sheet = TyssueSheet(data)
-    step_s, time_s, events, judged_s, turns = 0.05, 0.0, [], {}, 0
-    while time_s < END_S["tyssue"]:
+    step_s, time_s, parted_s, judged_s = 0.05, 0.0, {}, {}
+    while time_s < END_S:
         length = sheet.lengths()
         sheet.move(step_s)
         time_s += step_s
@@ -171,25 +172,51 @@ def by_tyssue(path, by_rule_of_plica):
                  and not (by_rule_of_plica and time_s < judged_s.get(sheet.pairs[e], -AGAIN_S) + AGAIN_S)]
         if short:
             judged_s[sheet.pairs[short[0]]] = time_s
-            parted = sheet.turn(short[0], by_rule_of_plica)
-            turns += bool(parted)
-            events += [(time_s, *pair) for pair in parted]
-    theirs = {(int(a), int(b)): t for t, a, b in reversed(events)}
-    ours = {(int(a), int(b)): t for t, a, b in data["events"][::-1]}
-    both = sorted(ours.keys() & theirs.keys())
-    for end_s in (END_S["tyssue"] / 10, END_S["tyssue"]):
-        soon, then = ({pair for pair, at_s in when.items() if at_s <= end_s} for when in (ours, theirs))
-        print(f"pairs that part within {end_s:.0f} s: plica {len(soon)}, tyssue {len(then)}, both {len(soon & then)}")
-    print(f"short edges of tyssue that shrink at the end: {sum(1 for e, l in enumerate(sheet.lengths()) if l < BELOW) // 2}")
-    if len(both) > 2:
-        print(f"rank correlation of their times: {spearmanr([ours[p] for p in both], [theirs[p] for p in both]).statistic:.2f} (n = {len(both)})")
-    for pair in sorted(both, key=ours.get):
-        print(f"  cells {pair[0]} and {pair[1]}: plica {ours[pair]:.0f} s, tyssue {theirs[pair]:.0f} s")
+            for pair in sheet.turn(short[0], by_rule_of_plica):
+                parted_s.setdefault(pair, time_s)
+    return parted_s, sum(1 for length in sheet.lengths() if length < BELOW) // 2
+
+
+def concordance(ours, theirs):
+    """Return the pairs of events in the same order minus those in the opposite order, and their number, over sheets of times."""
+    signs = [np.sign((a[i] - a[j]) * (b[i] - b[j])) for a, b in zip(ours, theirs) for i, j in combinations(range(len(a)), 2)]
+    return np.sum(signs), np.count_nonzero(signs)
+
+
+def by_tyssue(paths, by_rule_of_plica):
+    ours, theirs, counts = [], [], np.zeros(5, dtype=int)
+    for path in paths:
+        data = np.load(path, allow_pickle=True)
+        plica = {(int(a), int(b)): t for t, a, b in data["events"][::-1] if t <= END_S}
+        tyssue, short = events_of_tyssue(data, by_rule_of_plica)
+        both = sorted(plica.keys() & tyssue.keys(), key=plica.get)
+        first = [set(sorted(times, key=times.get)[:3]) for times in (plica, tyssue)]
+        of_sheet = [len(plica), len(tyssue), len(both), len(first[0]), len(first[0] & first[1])]
+        counts += of_sheet
+        print(f"{path}: pairs that part within {END_S:.0f} s: plica {of_sheet[0]}, tyssue {of_sheet[1]}, both {of_sheet[2]}; "
+              f"of the first {of_sheet[3]}: {of_sheet[4]}; {short} short edges of tyssue at the end")
+        print("  " + ", ".join(f"{a}-{b} {plica[a, b]:.1f} and {tyssue[a, b]:.1f} s" for a, b in both))
+        ours.append(np.array([plica[pair] for pair in both]))
+        theirs.append(np.array([tyssue[pair] for pair in both]))
+    print(f"all {len(paths)}: plica {counts[0]}, tyssue {counts[1]}, both {counts[2]}; of plica's first three in each sheet, "
+          f"{counts[4]} of {counts[3]} are tyssue's first three")
+    excess, compared = concordance(ours, theirs)
+    if compared:
+        random = np.random.default_rng(1)
+        chance = [concordance(ours, [random.permutation(times) for times in theirs])[0] >= excess for _ in range(2000)]
+        print(f"order of common events: Kendall's tau {excess / compared:.2f} ({compared} comparisons), p = {np.mean(chance):.4f}")
 
 
 if __name__ == "__main__":
-    which, file, *options = sys.argv[1:]
-    if which == "plica":
-        by_plica(file, int(options[1]) if options else 80)
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program", choices=["plica", "tyssue"])
+    parser.add_argument("files", nargs="+")
+    parser.add_argument("--cells", type=int, default=80)
+    parser.add_argument("--end-s", type=float, default=END_S)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--rule-of-plica", action="store_true")
+    options = parser.parse_args()
+    if options.program == "plica":
+        by_plica(options.files[0], options.cells, options.end_s, options.seed)
     else:
-        by_tyssue(file, options == ["--rule-of-plica"])
+        by_tyssue(options.files, options.rule_of_plica)

@@ -23,7 +23,11 @@ Judgement judge(const Outcome& outcome, std::optional<double> value, std::option
 }
 
 Interval probability_of_hit(std::size_t hits, std::size_t draws) {
-  const boost::math::beta_distribution<> known(1 + static_cast<double>(hits), 1 + static_cast<double>(draws - hits));
+  // Not by way of long double, as is Boost's default: Valgrind has no numbers of 80 bits, and the tables for them
+  // overflow there.
+  using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+  const boost::math::beta_distribution<double, Policy> known(1 + static_cast<double>(hits),
+                                                             1 + static_cast<double>(draws - hits));
   return {boost::math::quantile(known, 0.05), boost::math::quantile(known, 0.95)};
 }
 

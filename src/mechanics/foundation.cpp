@@ -11,7 +11,8 @@ Foundation::Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule
     : rule_(std::move(rule)),
       pattern_(std::move(pattern)),
       followed_(tissue, rule_.follow),
-      anchors_(tissue.rest_positions) {
+      anchors_(tissue.rest_positions),
+      facets_(tissue.facets(rule_.side)) {
   measure(tissue);
   support(tissue);
 }
@@ -20,7 +21,7 @@ Foundation::Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule
 void Foundation::measure(const Tissue& tissue) {
   areas_.clear();
   normals_.assign(tissue.node_count(), Vec3::Zero());
-  for (const Facet& facet : tissue.facets(rule_.side)) {
+  for (const Facet& facet : facets_) {
     const std::array<Vec3, 4> corners = gather(anchors_, facet);
     areas_.push_back(facet_area(corners));
     // The images of a periodic sheet move as their originals.
@@ -34,26 +35,37 @@ void Foundation::measure(const Tissue& tissue) {
   }
 }
 
-// Faces of a cell, or of all its daughters, keep its area, shared by present areas.
-void Foundation::share_areas(const Tissue& tissue, const TissueChange& change, std::span<const Vec3> positions) {
-  const std::vector<Facet>& facets = tissue.facets(rule_.side);
-  const auto origin = [&](const Facet& facet) { return change.origin[facet.cell.index()].index(); };
+// Where a cell keeps its faces, nothing changes, also at nodes that hang. Other faces of a cell, or of all its
+// daughters, share its area by their present areas.
+void Foundation::inherit_faces(const Foundation& before, const TissueChange& change, std::span<const Vec3> positions) {
+  const auto former = former_facets(change, before.pattern_.cells.size(), before.facets_, facets_);
+  const auto origin = [&](std::size_t f) { return change.origin[facets_[f].cell.index()].index(); };
+  std::vector<double> wholes(before.pattern_.cells.size(), 0), present = wholes;
+  for (std::size_t f = 0; f < before.facets_.size(); ++f) wholes[before.facets_[f].cell.index()] += before.areas_[f];
+  for (std::size_t n = change.kept_nodes(); n < normals_.size(); ++n) normals_[n].normalize();
   areas_.clear();
-  std::vector<double> wholes(cell_areas_.size(), 0);
-  for (const Facet& facet : facets) wholes[origin(facet)] += areas_.emplace_back(facet_area(gather(positions, facet)));
-  for (std::size_t f = 0; f < facets.size(); ++f)
-    areas_[f] *= cell_areas_[origin(facets[f])] / wholes[origin(facets[f])];
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    if (!former[f]) {
+      present[origin(f)] += areas_.emplace_back(facet_area(gather(positions, facets_[f])));
+      continue;
+    }
+    areas_.push_back(before.areas_[*former[f]]);
+    for (int i = 0; i < 4; ++i) {
+      const std::size_t from = before.facets_[*former[f]].nodes[i].index(), to = facets_[f].nodes[i].index();
+      anchors_[to] = before.anchors_[from];
+      normals_[to] = before.normals_[from];
+    }
+  }
+  for (std::size_t f = 0; f < facets_.size(); ++f)
+    if (!former[f]) areas_[f] *= wholes[origin(f)] / present[origin(f)];
 }
 
 void Foundation::support(const Tissue& tissue) {
-  const std::vector<Facet>& facets = tissue.facets(rule_.side);
-  cell_areas_.assign(tissue.cells.size(), 0);
   std::vector<double> areas(tissue.node_count(), 0);
   std::vector<std::vector<std::pair<CellId, double>>> parts(followed_.is_used() ? areas.size() : 0);
-  for (std::size_t f = 0; f < facets.size(); ++f) {
-    const CellId cell = facets[f].cell;
-    cell_areas_[cell.index()] += areas_[f];
-    for (const NodeId node : facets[f].nodes) {
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    const CellId cell = facets_[f].cell;
+    for (const NodeId node : facets_[f].nodes) {
       const std::size_t n = tissue.original(node).index();
       const double part = pattern_.strengths[cell.index()] * areas_[f] / 4;
       areas[n] += part;
@@ -173,11 +185,11 @@ std::unique_ptr<Law> Foundation::after_change(const Tissue& tissue, const Tissue
   after->followed_ = FollowedSignal(tissue, rule_.follow);
   after->anchors_ = with_new_nodes(tissue, change, anchors_);
   tissue.place_hanging_positions(after->anchors_);
+  after->facets_ = tissue.facets(rule_.side);
   after->is_remeshed_ = is_remeshed_ || !change.remeshed.empty();
   if (after->is_remeshed_) {
     after->normals_ = with_new_nodes(tissue, change, normals_);
-    for (Vec3& normal : after->normals_) normal.normalize();
-    after->share_areas(tissue, change, positions);
+    after->inherit_faces(*this, change, positions);
   } else {
     after->measure(tissue);
   }
@@ -237,6 +249,7 @@ std::unique_ptr<Law> Foundation::restored(const Tissue& tissue, const TissueChan
   law->pattern_ = pattern_.after_change(change);
   law->followed_ = FollowedSignal(tissue, rule_.follow);
   law->anchors_ = vectors_from(0);
+  law->facets_ = tissue.facets(rule_.side);
   law->is_remeshed_ = past.size() > numbers;
   if (law->is_remeshed_) {
     law->normals_ = vectors_from(numbers);

@@ -27,7 +27,8 @@ struct FoundationRule {
 
 /// Foundation law. Cell strengths scale stiffness and drag. It owns its anchors: after a change of the tissue, new
 /// nodes are anchored at the mean of those that they lie between. Once cells have been remeshed, anchors of a face tell
-/// neither its area nor its normal: cells keep the area of their faces, nodes their normal.
+/// neither its area nor its normal: nodes keep their normal, faces their area; those of a cell that is remeshed, or
+/// divides, share that of the cell.
 class Foundation final : public Law, public LawDerivatives {
  public:
   Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule rule);
@@ -74,7 +75,7 @@ class Foundation final : public Law, public LawDerivatives {
     std::vector<std::pair<CellId, double>> parts;  // of the area, by cell, if they follow a signal
   };
   void measure(const Tissue& tissue);
-  void share_areas(const Tissue& tissue, const TissueChange& change, std::span<const Vec3> positions);
+  void inherit_faces(const Foundation& before, const TissueChange& change, std::span<const Vec3> positions);
   void support(const Tissue& tissue);
   [[nodiscard]] bool is_pressed(const Support& support, const Step& step) const;
   using Activity = double (FollowedSignal::*)(std::span<const double>, CellId) const;
@@ -98,8 +99,8 @@ class Foundation final : public Law, public LawDerivatives {
   FollowedSignal followed_;
   Vectors anchors_;            // nodes; um
   Vectors normals_;            // nodes of the side; out of the tissue
-  std::vector<double> areas_;  // faces of the side; um^2
-  ByCell<double> cell_areas_;  // their sums
+  std::vector<Facet> facets_;  // of the side
+  std::vector<double> areas_;  // facets; um^2
   bool is_remeshed_ = false;
   std::vector<Support> supports_;
 };

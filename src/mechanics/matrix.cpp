@@ -28,14 +28,6 @@ ElementChunks face_chunks(const Tissue& tissue, const std::vector<Facet>& faces)
   return {tissue, corners};
 }
 
-// First face of each cell, and the end.
-std::vector<std::size_t> first_faces(const std::vector<Facet>& faces, std::size_t cells) {
-  std::vector<std::size_t> first(cells + 1, 0);
-  for (const Facet& face : faces) ++first[face.cell.index() + 1];
-  for (std::size_t c = 0; c < cells; ++c) first[c + 1] += first[c];
-  return first;
-}
-
 // Derivatives of shape functions by s and t, at (s, t) = (+-1, +-1)/sqrt(3).
 const Eigen::Matrix<double, 4, 2>& shape_gradients(int point) {
   static const std::array<Eigen::Matrix<double, 4, 2>, 4> gradients = [] {
@@ -293,19 +285,18 @@ std::vector<double> MatrixLayer::internal_after_change(std::span<const double> i
                                                        const TissueChange& change,
                                                        const ChangePositions& positions) const {
   const std::vector<Facet> faces = bonded_faces(tissue, rule_.side, pattern_.after_change(change));
-  const std::vector<std::size_t> former = first_faces(faces_, pattern_.cells.size()),
-                                 present = first_faces(faces, change.origin.size());
+  const std::vector<std::size_t> first = first_facets(faces_, pattern_.cells.size());
+  const auto former = former_facets(change, pattern_.cells.size(), faces_, faces);
   std::vector<double> after(first_number({faces.size(), 0}));
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const std::size_t cell = faces[f].cell.index(), origin = change.origin[cell].index();
-    if (positions.after.empty()) {  // a part of the tissue, whose cells keep their faces
-      const Place from{former[origin] + f - present[cell], 0};
-      std::copy_n(&internal[first_number(from)], first_number({1, 0}), &after[first_number({f, 0})]);
+    if (former[f]) {
+      std::copy_n(&internal[first_number({*former[f], 0})], first_number({1, 0}), &after[first_number({f, 0})]);
       continue;
     }
+    const std::size_t origin = change.origin[faces[f].cell.index()].index();
     const Corners x = corners(positions.after, faces[f]);
     for (int g = 0; g < 4; ++g) {
-      const Place from = nearest(former[origin], former[origin + 1], place_of(x, g), positions.before);
+      const Place from = nearest(first[origin], first[origin + 1], place_of(x, g), positions.before);
       const Tangents was = tangents(corners(positions.before, faces_[from.face]), from.point);
       const Mat2 map = map_between(was, tangents(x, g));
       carry(&internal[first_number(from)], map, &after[first_number({f, g})]);

@@ -56,7 +56,8 @@ class MatrixLayer final : public Law, public LawDerivatives {
 
   [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
                                                   std::span<const Vec3> positions) const override;
-  /// Each Gauss point takes elastic strain and thickness from the nearest one of the former cell.
+  /// Cells that keep their faces keep the numbers; elsewhere, each Gauss point takes elastic strain and thickness from
+  /// the nearest one of the former cell.
   [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& tissue,
                                                           const TissueChange& change,
                                                           const ChangePositions& positions) const override;

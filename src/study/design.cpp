@@ -106,7 +106,8 @@ std::string value_at(const StudyKey& key, double place) {
     return key.values[static_cast<std::size_t>(std::min(place * count, count - 1))];
   }
   if (key.mean) {
-    const boost::math::normal_distribution<> normal(*key.mean, *key.sd);
+    using Policy = boost::math::policies::policy<boost::math::policies::promote_double<false>>;  // as in judgement.cpp
+    const boost::math::normal_distribution<double, Policy> normal(*key.mean, *key.sd);
     const double from = std::isfinite(key.low) ? boost::math::cdf(normal, key.low) : 0;
     const double to = std::isfinite(key.high) ? boost::math::cdf(normal, key.high) : 1;
     const double part = std::clamp(from + place * (to - from), 1e-12, 1 - 1e-12);

@@ -6,6 +6,8 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -60,6 +62,14 @@ template <class Value>
 void follow(const TissueChange& change, std::map<std::string, Value>& values) {
   for (auto& [name, value] : values) follow(change, value);
 }
+
+/// Return the former number of each facet of one side, by facets before the change, where its cell keeps its facets:
+/// it is not remeshed, is no daughter and has as many as before. Facets of a cell are contiguous.
+std::vector<std::optional<std::size_t>> former_facets(const TissueChange& change, std::size_t cells_before,
+                                                      std::span<const Facet> before, std::span<const Facet> after);
+
+/// Return the first facet of each cell, and the end.
+std::vector<std::size_t> first_facets(std::span<const Facet> facets, std::size_t cells);
 
 /// Return vectors per free node before the change, laid out for the tissue after it, with new and hanging nodes placed.
 Vectors with_new_nodes(const Tissue& tissue, const TissueChange& change, const Vectors& before);

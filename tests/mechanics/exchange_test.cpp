@@ -8,6 +8,7 @@
 #include "mechanics/elasticity/corner_barrier.hpp"
 #include "mechanics/elasticity/neo_hookean.hpp"
 #include "mechanics/energy.hpp"
+#include "mechanics/foundation.hpp"
 #include "mechanics/model_memory.hpp"
 #include "support/divided.hpp"
 #include "support/prisms.hpp"
@@ -205,6 +206,8 @@ TEST(ExchangeOfCells, IsLeftUndoneWhereForcesWouldCloseTheNewFace) {
 // Contact, of which there is none here, may join distant cells: the whole sheet is changed to judge then.
 TEST(ExchangeOfCells, IsJudgedByCellsAboutTheWallAsByTheWholeSheet) {
   Model part = foam(uneven_sheet(), 0.2);
+  part.laws.push_back(
+      std::make_unique<Foundation>(part.tissue, every_cell(part.tissue), FoundationRule{.stiffness = 0.02}));
   State of_part = flowed_state(part);
   Model whole(part);
   State of_whole = of_part;

@@ -8,7 +8,7 @@
 #include "tissue/faces.hpp"
 
 namespace plica {
-namespace {
+namespace of_ablation {
 
 void check_ablation(const std::string& table, const AblationInput& ablation, const std::vector<std::string>& known,
                     Input& input) {
@@ -72,9 +72,10 @@ void check_ablations(Scenario& scenario, Input& input) {
   }
 }
 
-}  // namespace
+}  // namespace of_ablation
 
 ScenarioTable ablation_table() {
+  using namespace of_ablation;
   using A = AblationInput;
   ScenarioTable info{
       "ablation.*", "Laser ablation or optogenetic inhibition: loss of cortical and contractile strength.", "Activity"};

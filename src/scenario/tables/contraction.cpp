@@ -6,7 +6,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_contraction {
 
 using C = ContractionInput;
 
@@ -94,9 +94,10 @@ void describe(const C& input, const Scenario& scenario, Acting& acting) {
                    {"tension_mN_per_m", input.tension_mN_per_m, stress * height}};
 }
 
-}  // namespace
+}  // namespace of_contraction
 
 ScenarioTable contraction_table() {
+  using namespace of_contraction;
   ScenarioTable info{"contraction.*", "Contractile springs on cell edges.", "Activity"};
   const auto row = key_rows(info, &Scenario::contractions);
   info.rows = {

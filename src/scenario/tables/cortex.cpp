@@ -4,7 +4,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_cortex {
 
 using X = CortexInput;
 
@@ -190,9 +190,10 @@ void describe(const X& input, const Scenario& scenario, Acting& acting) {
                     scenario.elasticity.young_modulus_Pa * units::pascal * scenario.embryo.cell_height_um}};
 }
 
-}  // namespace
+}  // namespace of_cortex
 
 ScenarioTable cortex_table() {
+  using namespace of_cortex;
   ScenarioTable info{"cortex.*", "Actomyosin cortex: thin active, elastic layer on cell faces.", "Activity"};
   const auto row = key_rows(info, &Scenario::cortices);
   info.rows = {

@@ -5,7 +5,7 @@
 #include "tissue/faces.hpp"
 
 namespace plica {
-namespace {
+namespace of_division {
 
 void check_division(const std::string& table, const DivisionInput& division, Input& input) {
   for (const char* key : {".at_s", ".when", ".threshold"})
@@ -43,9 +43,10 @@ void check_cells(const Scenario& scenario, const Tissue& tissue, Errors& errors)
                                    "the cells of this embryo cannot divide: " + *why, how_to_divide(scenario, tissue)));
 }
 
-}  // namespace
+}  // namespace of_division
 
 ScenarioTable division_table() {
+  using namespace of_division;
   using V = DivisionInput;
   ScenarioTable info{
       "division.*",

@@ -8,7 +8,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_elasticity {
 
 using E = ElasticityInput;
 using R = RegionElasticityInput;
@@ -161,9 +161,10 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
     model.laws.push_back(std::make_unique<CornerBarrier>(model.tissue, barrier_Pa * units::pascal));
 }
 
-}  // namespace
+}  // namespace of_elasticity
 
 std::vector<ElasticMaterial> elastic_materials(const Scenario& scenario, const Origin& origin, const Tissue& tissue) {
+  using namespace of_elasticity;
   const ElasticityInput& common = scenario.elasticity;
   std::vector<ElasticMaterial> materials(tissue.elements.size(),
                                          {1, common.poisson_ratio, common.relaxation_s.value_or(0)});
@@ -183,6 +184,7 @@ std::vector<ElasticMaterial> elastic_materials(const Scenario& scenario, const O
 }
 
 ScenarioTable elasticity_table() {
+  using namespace of_elasticity;
   ScenarioTable info{"elasticity", "Constitutive law of cells.", "Passive mechanics"};
   const auto row = key_rows("elasticity", &Scenario::elasticity);
   info.rows = {
@@ -216,6 +218,7 @@ ScenarioTable elasticity_table() {
 }
 
 ScenarioTable region_elasticity_table() {
+  using namespace of_elasticity;
   ScenarioTable info{
       "elasticity.*",
       "Different elasticity of a region or layer; default values are those of `[elasticity]`. Tables must not overlap.",

@@ -7,7 +7,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_embryo {
 
 using E = EmbryoInput;
 
@@ -122,15 +122,17 @@ void check_periods(const Scenario& scenario, Input& input) {
                  "remove rim, or one direction of embryo.periodic");
 }
 
-}  // namespace
+}  // namespace of_embryo
 
 std::int64_t built_cell_count(const EmbryoInput& embryo) {
+  using namespace of_embryo;
   const std::int64_t a = embryo.cells[0], b = embryo.cells[1], c = embryo.cells[2];
   const bool has_ends = shape_of(embryo) != EmbryoShape::slice;
   return shape_of(embryo) == EmbryoShape::block ? a * b * c : 2 * (a * b + (has_ends ? b * c : 0) + c * a);
 }
 
 ScenarioTable embryo_table() {
+  using namespace of_embryo;
   ScenarioTable info{"embryo", "Reference geometry of the cell sheet.", "Geometry"};
   const auto row = key_rows("embryo", &Scenario::embryo);
   info.rows = {

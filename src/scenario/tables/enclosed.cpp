@@ -3,7 +3,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_enclosed {
 
 void check_enclosed(Scenario& scenario, Input& input) {
   bool is_kept = false;
@@ -49,9 +49,10 @@ void build(const Scenario& scenario, const Origin&, Model& model) {
   }
 }
 
-}  // namespace
+}  // namespace of_enclosed
 
 ScenarioTable enclosed_table() {
+  using namespace of_enclosed;
   using N = EnclosedInput;
   ScenarioTable info{"enclosed.*", "Volume enclosed by the cell sheet, such as the yolk.", "Surroundings"};
   const auto row = key_rows(info, &Scenario::enclosed);

@@ -4,7 +4,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_exchange {
 
 using X = ExchangeInput;
 
@@ -60,9 +60,10 @@ void check_cells(const Scenario& scenario, const Tissue& tissue, Errors& errors)
                                    "\"diagonals\""));
 }
 
-}  // namespace
+}  // namespace of_exchange
 
 ScenarioTable exchange_table() {
+  using namespace of_exchange;
   ScenarioTable info{"exchange", "Exchange of neighbours (T1): short lateral faces turn by a quarter.", "Activity"};
   const auto row = key_rows("exchange", &Scenario::exchange);
   info.rows = {

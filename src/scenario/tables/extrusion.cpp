@@ -2,7 +2,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_extrusion {
 
 void check_extrusion(const std::string& table, ExtrusionInput& extrusion, const Scenario& scenario, Input& input) {
   for (const char* key : {"", ".apical_area_below_um2", ".basal_area_below_um2"})
@@ -13,9 +13,10 @@ void check_extrusion(const std::string& table, ExtrusionInput& extrusion, const 
     input.report(table, "cells lose neighbours only by exchange", "set exchange.below_um, for example to 0.35");
 }
 
-}  // namespace
+}  // namespace of_extrusion
 
 ScenarioTable extrusion_table() {
+  using namespace of_extrusion;
   using X = ExtrusionInput;
   ScenarioTable info{"extrusion.*",
                      "Extrusion (T2): a small cell that has come down to three lateral faces leaves the sheet.",

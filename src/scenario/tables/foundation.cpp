@@ -4,7 +4,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_foundation {
 
 using F = FoundationInput;
 
@@ -51,9 +51,10 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
 
 void describe(const F&, const Scenario&, Acting& acting) { acting.faces_key = "faces"; }
 
-}  // namespace
+}  // namespace of_foundation
 
 ScenarioTable foundation_table() {
+  using namespace of_foundation;
   ScenarioTable info{"foundation.*",
                      "Elastic, viscous foundation: holds cell faces to their reference positions, as a substrate does.",
                      "Surroundings"};

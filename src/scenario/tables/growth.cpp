@@ -6,7 +6,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_growth {
 
 using G = GrowthInput;
 
@@ -77,9 +77,10 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
   }
 }
 
-}  // namespace
+}  // namespace of_growth
 
 ScenarioTable growth_table() {
+  using namespace of_growth;
   ScenarioTable info{"growth.*",
                      "Growth of cells without division: rest shapes, target volumes and cortical reference areas. "
                      "Several tables multiply.",

@@ -5,7 +5,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_hold {
 
 // One entry per node.
 std::vector<bool> held_nodes(const HoldInput& input, const Tissue& tissue) {
@@ -47,9 +47,10 @@ void build(const Scenario& scenario, const Origin&, Model& model) {
   }
 }
 
-}  // namespace
+}  // namespace of_hold
 
 ScenarioTable hold_table() {
+  using namespace of_hold;
   using H = HoldInput;
   ScenarioTable info{"hold.*", "Fixed nodes (Dirichlet condition).", "Surroundings"};
   const auto row = key_rows(info, &Scenario::holds);

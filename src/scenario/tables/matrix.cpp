@@ -4,7 +4,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_matrix {
 
 using M = MatrixInput;
 
@@ -28,9 +28,10 @@ void check(const std::string& table, M& input, const Scenario& scenario, Input& 
 
 void describe(const M&, const Scenario&, Acting& acting) { acting.faces_key = "faces"; }
 
-}  // namespace
+}  // namespace of_matrix
 
 ScenarioTable matrix_table() {
+  using namespace of_matrix;
   ScenarioTable info{
       "matrix.*",
       "Extracellular matrix, such as a basement membrane: a thin elastic or relaxing layer bonded to cell "

@@ -7,7 +7,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_monitor {
 
 std::vector<std::string_view> quantity_names() {
   std::vector<std::string_view> names;
@@ -102,7 +102,7 @@ void check_expectations(Scenario& scenario, Input& input) {
   if (input.sound("monitor")) check_expected_monitors(scenario, input);
 }
 
-}  // namespace
+}  // namespace of_monitor
 
 ScenarioTable stop_table() {
   ScenarioTable info{"stop", "Early end of a run.", "Run"};
@@ -119,6 +119,7 @@ ScenarioTable stop_table() {
 }
 
 ScenarioTable criterion_table() {
+  using namespace of_monitor;
   using K = CriterionInput;
   ScenarioTable info{"stop.*", "Bound on a monitor that ends the run, checked after each step.", "Run"};
   const auto row = key_rows(info, &Scenario::criteria);
@@ -134,6 +135,7 @@ ScenarioTable criterion_table() {
 }
 
 ScenarioTable monitor_table() {
+  using namespace of_monitor;
   using M = MonitorInput;
   ScenarioTable info{"monitor.*",
                      "Probe: one value per step in `series.csv`, column `NAME.quantity_unit`; the last is in "
@@ -171,6 +173,7 @@ ScenarioTable monitor_table() {
 }
 
 ScenarioTable expect_table() {
+  using namespace of_monitor;
   using X = ExpectInput;
   ScenarioTable info{"expect.*",
                      "Checks at the end of the run; a miss gives exit status 1: `NAME = { value = 28.89, "

@@ -3,7 +3,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_pressure {
 
 using P = PressureInput;
 
@@ -22,9 +22,10 @@ void describe(const P& input, const Scenario& scenario, Acting& acting) {
   acting.forces = {{"pressure_Pa", input.pressure_Pa, scenario.elasticity.young_modulus_Pa}};
 }
 
-}  // namespace
+}  // namespace of_pressure
 
 ScenarioTable pressure_table() {
+  using namespace of_pressure;
   ScenarioTable info{"pressure.*", "Pressure on cell faces.", "Surroundings"};
   const auto row = key_rows(info, &Scenario::pressures);
   info.rows = {

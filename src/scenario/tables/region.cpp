@@ -15,7 +15,7 @@
 #include "tissue/faces.hpp"
 
 namespace plica {
-namespace {
+namespace of_region {
 
 using R = RegionInput;
 
@@ -185,7 +185,7 @@ void note_missing(const std::string& name, const CellArray& values, std::vector<
   if (std::ranges::find(remarks, remark) == remarks.end()) remarks.push_back(remark);
 }
 
-}  // namespace
+}  // namespace of_region
 
 Diagnostic diagnostic_at(const Scenario& scenario, const std::string& key, std::string problem, std::string remedy) {
   GivenAt place{scenario.file, 0};
@@ -204,6 +204,7 @@ void throw_at(const Scenario& scenario, const std::string& key, std::string prob
 }
 
 Diagnostic no_array(const Scenario& scenario, const std::string& key, const std::string& array, const Tissue& tissue) {
+  using namespace of_region;
   const std::vector<std::string> names = keys_of(tissue.cell_arrays);
   return diagnostic_at(scenario, key, fmt::format("the embryo has no array \"{}\"", array),
                        names.empty()
@@ -212,6 +213,7 @@ Diagnostic no_array(const Scenario& scenario, const std::string& key, const std:
 }
 
 void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnostic>& errors) {
+  using namespace of_region;
   const std::size_t cells = tissue.cells.size();
   const Extent extent = extent_along(tissue);
   std::vector<int> from_midline;  // computed when a region needs it
@@ -272,6 +274,7 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
 }
 
 ScenarioTable region_table() {
+  using namespace of_region;
   ScenarioTable info{
       "region.*", "Named cell set: cells that meet all given selectors, in the reference state. `all` is predefined.",
       "Geometry"};

@@ -4,7 +4,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_run {
 
 std::vector<std::string_view> set_names() {
   std::vector<std::string_view> names = {"automatic"};
@@ -31,7 +31,7 @@ void check_integrator(const Scenario& scenario, Input& input) {
     input.report("time.integrator", "\"bdf2\" does not support " + why, "set integrator to \"backward-euler\"");
 }
 
-}  // namespace
+}  // namespace of_run
 
 ScenarioTable top_table() {
   using S = Scenario;
@@ -49,6 +49,7 @@ ScenarioTable top_table() {
 }
 
 ScenarioTable time_table() {
+  using namespace of_run;
   ScenarioTable info{"time", "Time steps and end of the run.", "Run"};
   const auto row = key_rows("time", &Scenario::time);
   info.rows = {
@@ -86,6 +87,7 @@ ScenarioTable time_table() {
 }
 
 ScenarioTable measure_table() {
+  using namespace of_run;
   ScenarioTable info{"measure", "What is measured.", "Output"};
   const auto row = key_rows("measure", &Scenario::measure);
   info.rows = {

@@ -7,7 +7,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_self_contact {
 
 void check_contact(Scenario& scenario, Input& input) {
   if (!input.sound("self_contact") || !input.sound("self_contact.surface")) return;
@@ -48,9 +48,10 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
     }
 }
 
-}  // namespace
+}  // namespace of_self_contact
 
 ScenarioTable self_contact_table() {
+  using namespace of_self_contact;
   using F = SelfContactInput;
   ScenarioTable info{"self_contact", "Contact of the sheet with itself.", "Surroundings"};
   const auto row = key_rows("self_contact", &Scenario::self_contact);

@@ -8,7 +8,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_signal {
 
 using S = SignalInput;
 
@@ -137,9 +137,10 @@ void list_regions(const Scenario& scenario, const TakeRegion& take) {
   }
 }
 
-}  // namespace
+}  // namespace of_signal
 
 ScenarioTable signal_table() {
+  using namespace of_signal;
   using Source = SignalSourceInput;
   ScenarioTable info{
       "signal.*", "Signal: a concentration per cell, which is made, decays, reacts and diffuses through lateral faces.",

@@ -2,7 +2,7 @@
 #include "scenario/tables/table.hpp"
 
 namespace plica {
-namespace {
+namespace of_surroundings {
 
 void check_shell_drag(const Scenario& scenario, Input& input) {
   const std::string key = "vitelline.drag_Pa_s_per_um";
@@ -33,9 +33,10 @@ void check_dynamics(Scenario& scenario, Input& input) {
                  "set surface_drag_Pa_s_per_um or density_kg_per_m3 above 0");
 }
 
-}  // namespace
+}  // namespace of_surroundings
 
 ScenarioTable vitelline_table() {
+  using namespace of_surroundings;
   ScenarioTable info{"vitelline", "Vitelline membrane.", "Surroundings"};
   const auto row = key_rows("vitelline", &Scenario::vitelline);
   info.rows = {
@@ -54,6 +55,7 @@ ScenarioTable vitelline_table() {
 }
 
 ScenarioTable dynamics_table() {
+  using namespace of_surroundings;
   using D = DynamicsInput;
   ScenarioTable info{"dynamics", "Drag, viscosity and inertia; drag and density must not both be 0.",
                      "Passive mechanics"};

@@ -1,4 +1,6 @@
-// Helpers to write a scenario table: its rows (key, member that it fills, allowed values, meaning) and its rules.
+// Helpers to write a scenario table: its rows (key, member that it fills, allowed values, meaning) and its rules. What
+// a table's file has for itself is in a namespace of_FILE, because names such as `build` recur in files that are
+// compiled together.
 #pragma once
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "tissue/faces.hpp"
 
 namespace plica {
-namespace {
+namespace of_volume {
 
 void refuse_with_paper(const Scenario& scenario, Input& input) {
   const auto refuse = [&](const std::string& key, std::string_view what, std::string_view remedy) {
@@ -87,9 +87,10 @@ void check_surfaces(const Scenario& scenario, const Tissue& tissue, Errors& erro
   check_nodes_are_free(scenario, tissue, errors);
 }
 
-}  // namespace
+}  // namespace of_volume
 
 ScenarioTable volume_table() {
+  using namespace of_volume;
   ScenarioTable info{"volume", "Conservation of cell volume.", "Passive mechanics"};
   const auto row = key_rows("volume", &Scenario::volume);
   info.rows = {
