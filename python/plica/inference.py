@@ -53,11 +53,13 @@ TINY = float(np.finfo(float).tiny)
 MISSED = "Residuals exceed the noise: the model differs from the tissue, or noise_um is too small"
 SEARCH_PROBES = 6  # gradients for the curvature, by default
 MOST_WHOLE = 200  # coefficients, up to which the whole Hessian is computed by default
+LEFT, MOST_PRODUCTS = 0.1, 30  # part of the residual at which conjugate gradients end, and products until then
 NOISE_ERROR = 0.1  # relative, of the noise that is given, up to which no model is said to be wrong
 
 
 class _Descent:
-    """L-BFGS iterations of weight * misfit / 2 + sum(precision * v**2) / 2, weights of which may change in between."""
+    """Iterations of weight * misfit / 2 + sum(precision * v**2) / 2, weights of which may change in between: by L-BFGS, or by
+    Gauss-Newton steps where factors are many."""
 
     def __init__(self, problem: Problem, spread: Optional[float], probes: Optional[int]) -> None:
         self.problem, self.given_spread, self.given_probes = problem, spread, probes
@@ -65,6 +67,7 @@ class _Descent:
         self.spreads: Array = np.full(len(problem.fields), FIRST_SPREAD if spread is None else spread)
         self.weight = 1.0  # of the misfit; below 1 where it exceeds the noise
         self.times = 0
+        self.is_large = len(self.v) > MOST_WHOLE
         self.converged = self._is_slow = False
 
     def begin(self, times: int) -> None:
@@ -75,12 +78,23 @@ class _Descent:
         self.tape = self.problem.run(self.v, times)
         self.misfits = self.problem.misfits(self.tape, times)
         self.slope = self.problem.gradient(self.tape, self.v, times)
+        self.linearise()
+
+    def linearise(self, coarsely: bool = True) -> None:
+        """Renew the derivatives of residuals, where factors are many by a run in longer steps."""
+        self.linear = self.tape
+        if self.is_large and coarsely:
+            try:
+                self.linear = self.problem.run_coarsely(self.v, self.times)
+            except NumericsError:
+                pass
         self.probe()
+        self._direction: Optional[Array] = None
 
     def probe(self) -> None:
         """Estimate the Gauss-Newton Hessian of half the misfit at the present point."""
         rng = np.random.default_rng(0)
-        probes = [self.problem.probe(self.tape, self.v, self.times, rng) for _ in range(self.given_probes or SEARCH_PROBES)]
+        probes = [self.problem.probe(self.linear, self.v, self.times, rng) for _ in range(self.given_probes or SEARCH_PROBES)]
         fields, by_law = self.problem.fields, [np.array(ones).T for ones in zip(*probes)]
         self.curvature = np.concatenate([  # diagonal in coefficients
             field.band_means(((field.vectors.T @ g) ** 2).mean(axis=1)) for field, g in zip(fields, by_law)])
@@ -101,15 +115,19 @@ class _Descent:
         return self.weight * self.slope + self.precision * self.v
 
     @property
+    def direction(self) -> Array:
+        if self._direction is None:
+            self._direction = -(self.newton if self.is_large else self.inverse_hessian)(self.gradient)
+        return self._direction
+
+    @property
     def distance(self) -> float:
         """Estimated mean squared distance from the minimum, in units of posterior variances."""
-        gradient = self.gradient
-        return float(gradient @ self.inverse_hessian(gradient)) / len(self.v)
+        return -float(self.gradient @ self.direction) / len(self.v)
 
     def step(self) -> bool:
         """Take one iteration. Returns whether it decreased the objective."""
-        gradient, value = self.gradient, self.value(self.v, self.misfits)
-        direction = -self.inverse_hessian(gradient)
+        gradient, value, direction = self.gradient, self.value(self.v, self.misfits), self.direction
         largest = max(np.abs(log).max() for log in self.problem.logs(direction))
         length = min(1.0, LARGEST_CHANGE / largest)
         downhill = float(gradient @ direction)
@@ -133,10 +151,30 @@ class _Descent:
 
     def _accept(self, v: Array, misfits: Array, slope: Array) -> None:
         step, change = v - self.v, slope - self.slope
-        if step @ (self.weight * change + self.precision * step) > 0:
+        self.v, self.misfits, self.slope, self._direction = v, misfits, slope, None
+        if self.is_large:
+            self.linearise()
+        elif step @ (self.weight * change + self.precision * step) > 0:
             self.steps.append(step)
             self.changes.append(change)
-        self.v, self.misfits, self.slope = v, misfits, slope
+
+    def newton(self, q: Array) -> Array:
+        """Apply the inverse of the Gauss-Newton Hessian by conjugate gradients, preconditioned by its diagonal."""
+        precision = self.precision
+        diagonal = self.weight * self.curvature + precision
+        found, left = np.zeros_like(q), q.copy()
+        first = rest = float(left @ (left / diagonal))
+        along = left / diagonal
+        for _ in range(MOST_PRODUCTS):
+            product = self.weight * self.problem.product(self.linear, self.v, along, self.times) + precision * along
+            length = rest / float(along @ product)
+            found += length * along
+            left -= length * product
+            before, rest = rest, float(left @ (left / diagonal))
+            if rest < LEFT**2 * first:
+                break
+            along = left / diagonal + rest / before * along
+        return found
 
     def inverse_hessian(self, q: Array) -> Array:
         """Apply the L-BFGS approximation of the inverse Hessian."""
@@ -177,6 +215,7 @@ class _Descent:
                     spread = math.sqrt(float(field.unit_precision[varied] @ v[varied]**2) / float(of_law[varied].sum()))
                     self.spreads[k] = min(max(spread, SPREADS[0]), SPREADS[1])
         self.weight = min(1.0, free / max(float(self.misfits.sum()), TINY))
+        self._direction = None
         return bool(np.abs(np.log(np.append(self.spreads, self.weight**-0.5) / before)).max() > 0.1)
 
     def fit(self, most_runs: int, after_step: Callable[[], None]) -> None:
@@ -198,10 +237,13 @@ class _Descent:
                     adapted += 1
                     continue
                 if not self.step():
-                    break
+                    if self.linear is self.tape:
+                        break
+                    self.linearise(coarsely=False)
+                    continue
                 adapted = 0
                 slow, after = (SLOW, SLOW_AFTER) if times == last else (SLOW_EARLY, 1)
-                self._is_slow = len(self.steps) > after and self.value(self.v, self.misfits) > (1 - slow) * value
+                self._is_slow = (self.is_large or len(self.steps) > after) and self.value(self.v, self.misfits) > (1 - slow) * value
                 after_step()
 
     def curvatures(self) -> list[tuple[slice, Array]]:
