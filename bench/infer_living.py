@@ -12,6 +12,7 @@ inference and one run. DIR keeps target and search, so an interrupted inference 
 """
 import argparse
 import json
+import sys
 import time
 from pathlib import Path
 
@@ -89,6 +90,7 @@ def main():
         targets[time_min] = {"centres_um": centres, "areas_um2": areas}
         apart = np.column_stack([same_centres - centres, (same_areas - areas) / np.sqrt(2 * areas)]) / noise_um
         of_truth.append(np.sqrt((apart**2).mean()))
+    print(f"misfit of the true factors {np.round(of_truth, 2)}; run {run_s:.0f} s", file=sys.stderr, flush=True)
 
     start = time.process_time()
     found = plica.infer(model, targets, of=LAW, noise_um=noise_um, threads=given.threads, progress=True,
