@@ -54,14 +54,15 @@ class LabelQuality:
         return least
 
     def __repr__(self) -> str:
-        worst = int(np.argmin(self.scaled_jacobian))
-        label = self._tissue.cell_data["label"][worst]
+        off, flattest = int(np.argmax(np.abs(self.volume_error))), int(np.argmin(self.scaled_jacobian))
+        label = self._tissue.cell_data["label"]
         return (f"neighbours right: {100 * self.neighbours_right:.1f} %\n"
                 f"corners: {np.median(self.corner_distance_um) / self.voxel_um:.2f} voxels from the labels' (median)\n"
-                f"volumes: {100 * np.median(np.abs(self.volume_error)):.1f} % off (median), {100 * np.abs(self.volume_error).max():.0f} % at most\n"
+                f"volumes: {100 * np.median(np.abs(self.volume_error)):.1f} % off (median), {100 * abs(self.volume_error[off]):.0f} % at most, "
+                f"in cell {label[off]:.0f}\n"
                 f"areas: apical {100 * np.median(np.abs(self.apical_area_error)):.1f} %, basal "
                 f"{100 * np.median(np.abs(self.basal_area_error)):.1f} % off (median)\n"
-                f"scaled Jacobian: {self.scaled_jacobian[worst]:.2f} at least, in cell {label:.0f}")
+                f"scaled Jacobian: {self.scaled_jacobian[flattest]:.2f} at least, in cell {label[flattest]:.0f}")
 
 
 class LabelledTissue(PrismTissue):

@@ -137,12 +137,14 @@ class LabelledShapes(Mapping[float, dict[str, Array]]):
     def _told(self) -> list[str]:
         remarks = []
         missing = np.isnan(self.areas_um2)
-        for what, where in (("are missing or cut in", missing), ("are doubtful in", self.doubtful)):
+        for what, where in (("missing or cut", missing), ("doubtful", self.doubtful)):
             of_cell = where.sum(axis=0)
             cells = np.flatnonzero(of_cell)
             if len(cells):
                 named = ", ".join(str(self.labels[cell]) for cell in cells[:5])
-                remarks.append(f"{len(cells)} cells ({named}{', …' if len(cells) > 5 else ''}) {what} 1 to {of_cell.max()} of {len(self)} frames")
+                many = "1 cell is" if len(cells) == 1 else f"{len(cells)} cells are"
+                frames = " to ".join(str(one) for one in np.unique([of_cell[cells].min(), of_cell.max()]))
+                remarks.append(f"{many} {what} in {frames} of {len(self)} frames: {named}{', …' if len(cells) > 5 else ''}")
         if len(self) < FEWEST_TIMES:
             remarks.append(f"noise_um is half a pixel, and wrong labels are not looked for: that takes {FEWEST_TIMES} frames")
         return remarks

@@ -301,7 +301,8 @@ def _tell(tissue: LabelledTissue, layer: Layer, labels: Labels, volumes: Floats,
     pairs = one_sided_pairs(layer, kept)
     if pairs:
         named = ", ".join(" and ".join(str(labels.names[cell - 1]) for cell in pair) for pair in pairs[:3])
-        labels.remarks.append(f"{len(pairs)} pairs of cells touch on one side only (scutoids), {named}{', …' if len(pairs) > 3 else ''}; the "
+        many = "1 pair of cells touches" if len(pairs) == 1 else f"{len(pairs)} pairs of cells touch"
+        labels.remarks.append(f"{many} on one side only (scutoids), {named}{', …' if len(pairs) > 3 else ''}; the "
                               f"first at {labels.where(labels.place_of(pairs[0][0]))}: neighbours are those of the middle height")
     for loop in _openings(layer, kept):
         place = layer.middle[loop].mean(axis=0) / layer.spacing

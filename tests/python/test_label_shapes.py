@@ -73,7 +73,7 @@ def test_wrong_labels_are_doubtful_and_links_join_daughters():
     assert set(np.flatnonzero(shapes.doubtful[:, 5])) == {2, 4} and shapes.doubtful.sum() == 2
     assert np.isnan(shapes[2.0]["areas_um2"][[5, 6]]).all() and np.isnan(shapes[4.0]["centres_um"][5]).all()
     assert np.isfinite(shapes.areas_um2[2, 5]) and np.isnan(shapes.areas_um2[2, 6])
-    assert any("are doubtful in" in remark for remark in shapes.remarks)
+    assert f"1 cell is doubtful in 2 of {len(TIMES)} frames: {label}" in shapes.remarks
     assert shapes.noise_um == pytest.approx(clean.noise_um, rel=0.3)
     # Daughters are taken together, and each frame may have other numbers.
     links = [(time, name, name) for time in TIMES for name in np.unique(wrong[int(time)]) if name != 999]

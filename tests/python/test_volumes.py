@@ -75,6 +75,8 @@ def test_cells_have_their_numbers():
     labels, _, _ = drawn("tube")
     tissue = made(np.where(labels > 0, labels.astype(np.int64) * 1000 + 7, 0), apical="outside")
     assert set(tissue.cell_data["label"]) <= {1000 * label + 7 for label in range(1, 81)}
+    worst = tissue.cell_data["label"][np.argmax(abs(tissue.quality.volume_error))]
+    assert f"at most, in cell {worst:.0f}\n" in repr(tissue.quality)
     assert np.median(tissue.cell_data["height_um"]) == pytest.approx(6, rel=0.05)
     assert np.median(tissue.cell_data["taper"]) == pytest.approx(15 / 9, rel=0.1)
     volume = (labels == tissue.cell_data["label"][0] // 1000).sum() / 8
