@@ -110,6 +110,17 @@ class TapeOf {
     return array_of(std::move(numbers));
   }
 
+  /// Return derivatives of positions along a change of strengths: states x nodes x 3.
+  [[nodiscard]] nb::list tangent(const StrengthFactors& change, const std::vector<std::size_t>& states,
+                                 double tolerance) const {
+    const std::vector<Vectors> found = computed(threads_, [&](const auto& stop) {
+      return tape_.tangent(change, states, {{}, tolerance, stop}).value_or(std::vector<Vectors>());
+    });
+    nb::list result;
+    for (const Vectors& of_state : found) result.append(array_of(std::span<const Vec3>(of_state)));
+    return result;
+  }
+
   [[nodiscard]] const Tape& tape() const { return tape_; }
 
  private:
@@ -129,6 +140,7 @@ void bind_tapes(nb::module_& module) {
       .def("gradient", &TapeOf::gradient, nb::arg("outcome"), nb::arg("parameters"), nb::arg("law"),
            nb::arg("tolerance"))
       .def("jacobian", &TapeOf::jacobian, nb::arg("outcomes"), nb::arg("parameters"), nb::arg("tolerance"))
+      .def("tangent", &TapeOf::tangent, nb::arg("change"), nb::arg("states"), nb::arg("tolerance"))
       .def(
           "state_at", [](const TapeOf& self, double time_s) { return self.tape().state_at(time_s); }, nb::arg("time_s"))
       .def(

@@ -2,23 +2,17 @@
 
 Log factors of a law are Q v, with the eigenvectors Q of the Laplacian of the graph of its cells. Prior: coefficients v are
 independent. Half of their variance spread² falls as 1 / (1 + length² eigenvalue), so neighbours correlate over a length; half is
-equal for all, since cells also differ from their neighbours. For these coefficients, the misfit's Hessian is nearly diagonal and a
-smooth function of the eigenvalue: L-BFGS starts from this diagonal, and so takes few runs.
-
-Gradients g of sums of residuals with random weights have the mean of g gᵀ equal to the Gauss-Newton Hessian. A few of them give its
-diagonal, averaged over bands of eigenvectors, and its differences from cell to cell, averaged over neighbours. From this follows the
-weight of the prior, by its evidence (MacKay 1992). The uncertainty follows from the whole Hessian, one run per cell, or from the same
-averages where cells are many.
+equal for all, since cells also differ from their neighbours. Their weights, and the search, are in inference_search.py. The uncertainty
+follows from the whole Hessian, one run per cell, or from averages where cells are many.
 """
 from __future__ import annotations
 
 import hashlib
-import math
 import os
 import sys
 import warnings
 import zipfile
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import NormalDist
@@ -28,9 +22,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import number_from, path_of, text_of, texts_of, told, whole
-from .errors import FileError, NumericsError
-from .fit_problem import largest_by_chance
+from .errors import FileError
 from .inference_problem import Field, Problem
+from .inference_search import Search
 from .knots import divided, times_of
 from .scenario import Scenario
 from .shape_targets import ApicalFaces, CellTarget, NodeTarget, Residuals, target_of
@@ -41,187 +35,7 @@ from .whole_cells import WholeCells
 __all__ = ["Inference", "infer"]
 
 Array = NDArray[np.float64]
-FIRST_SPREAD = 0.3  # prior standard deviation of log factors
-SPREADS = (0.03, 1.5)  # bounds of it
-LARGEST_CHANGE = 0.7  # of a log factor in one iteration
-CONVERGED = 0.003  # mean squared distance from the minimum, in units of posterior variances; an estimate, low by up to a factor of 5
-CONVERGED_EARLY = 0.5  # the same while later shapes are not compared yet
-SLOW, SLOW_AFTER = 0.03, 5  # relative decrease of an iteration, after some, at which weights are adapted
-SLOW_EARLY = 0.1  # the same at which the next shape is compared, too
-MOST_ADAPTED = 20  # times that weights are adapted at one point
-TINY = float(np.finfo(float).tiny)
 MISSED = "Residuals exceed the noise: the model differs from the tissue, or noise_um is too small"
-SEARCH_PROBES = 6  # gradients for the curvature, by default
-MOST_WHOLE = 200  # coefficients, up to which the whole Hessian is computed by default
-NOISE_ERROR = 0.1  # relative, of the noise that is given, up to which no model is said to be wrong
-
-
-class _Descent:
-    """L-BFGS iterations of weight * misfit / 2 + sum(precision * v**2) / 2, weights of which may change in between."""
-
-    def __init__(self, problem: Problem, spread: Optional[float], probes: Optional[int]) -> None:
-        self.problem, self.given_spread, self.given_probes = problem, spread, probes
-        self.v: Array = np.zeros(sum(len(field.acting) for field in problem.fields))
-        self.spreads: Array = np.full(len(problem.fields), FIRST_SPREAD if spread is None else spread)
-        self.weight = 1.0  # of the misfit; below 1 where it exceeds the noise
-        self.times = 0
-        self.converged = self._is_slow = False
-
-    def begin(self, times: int) -> None:
-        """Compare the first targets, from the present point."""
-        self.times = times
-        self.steps: list[Array] = []
-        self.changes: list[Array] = []  # of the gradient of half the misfit
-        self.tape = self.problem.run(self.v, times)
-        self.misfits = self.problem.misfits(self.tape, times)
-        self.slope = self.problem.gradient(self.tape, self.v, times)
-        self.probe()
-
-    def probe(self) -> None:
-        """Estimate the Gauss-Newton Hessian of half the misfit at the present point."""
-        rng = np.random.default_rng(0)
-        probes = [self.problem.probe(self.tape, self.v, self.times, rng) for _ in range(self.given_probes or SEARCH_PROBES)]
-        fields, by_law = self.problem.fields, [np.array(ones).T for ones in zip(*probes)]
-        self.curvature = np.concatenate([  # diagonal in coefficients
-            field.band_means(((field.vectors.T @ g) ** 2).mean(axis=1)) for field, g in zip(fields, by_law)])
-        # How well each cell is seen, and the diagonal if all were seen equally.
-        self.seen = [np.sqrt(np.maximum(field.near_means((g**2).mean(axis=1)), TINY)) for field, g in zip(fields, by_law)]
-        self.equal_curvature = [field.band_means(((field.vectors.T @ (g / seen[:, None])) ** 2).mean(axis=1))
-                                for field, g, seen in zip(fields, by_law, self.seen)]
-
-    @property
-    def precision(self) -> Array:
-        return self.problem.precision(self.spreads)
-
-    def value(self, v: Array, misfits: Array) -> float:
-        return 0.5 * self.weight * float(misfits.sum()) + 0.5 * float(self.precision @ v**2)
-
-    @property
-    def gradient(self) -> Array:
-        return self.weight * self.slope + self.precision * self.v
-
-    @property
-    def distance(self) -> float:
-        """Estimated mean squared distance from the minimum, in units of posterior variances."""
-        gradient = self.gradient
-        return float(gradient @ self.inverse_hessian(gradient)) / len(self.v)
-
-    def step(self) -> bool:
-        """Take one iteration. Returns whether it decreased the objective."""
-        gradient, value = self.gradient, self.value(self.v, self.misfits)
-        direction = -self.inverse_hessian(gradient)
-        largest = max(np.abs(log).max() for log in self.problem.logs(direction))
-        length = min(1.0, LARGEST_CHANGE / largest)
-        downhill = float(gradient @ direction)
-        for _ in range(6):
-            v = self.v + length * direction
-            new_value = math.inf
-            try:
-                tape = self.problem.run(v, self.times)
-                misfits = self.problem.misfits(tape, self.times)
-                new_value = self.value(v, misfits)
-            except NumericsError:
-                pass
-            if new_value <= value + 1e-4 * length * downhill:
-                self.tape = tape
-                self._accept(v, misfits, self.problem.gradient(tape, v, self.times))
-                return True
-            # Minimum of a parabola through the values and the slope.
-            shorter = -0.5 * downhill * length**2 / (new_value - value - downhill * length)
-            length = min(max(shorter, 0.1 * length), 0.5 * length)
-        return False
-
-    def _accept(self, v: Array, misfits: Array, slope: Array) -> None:
-        step, change = v - self.v, slope - self.slope
-        if step @ (self.weight * change + self.precision * step) > 0:
-            self.steps.append(step)
-            self.changes.append(change)
-        self.v, self.misfits, self.slope = v, misfits, slope
-
-    def inverse_hessian(self, q: Array) -> Array:
-        """Apply the L-BFGS approximation of the inverse Hessian."""
-        q, precision, weights = q.copy(), self.precision, []
-        pairs = [(s, self.weight * y + precision * s) for s, y in zip(self.steps, self.changes)]
-        pairs = [(s, y) for s, y in pairs if s @ y > 0]
-        for s, y in reversed(pairs):
-            weights.append((s @ q) / (s @ y))
-            q -= weights[-1] * y
-        q /= self.weight * self.curvature + precision
-        for (s, y), weight in zip(pairs, reversed(weights)):
-            q += (weight - (y @ q) / (s @ y)) * s
-        return q
-
-    def known(self) -> list[Array]:
-        """Return by law how far each coefficient is known from the targets: 0 not at all, 1 from them only."""
-        curvature = self.weight * self.curvature
-        return self.problem.by_law(curvature / (curvature + self.precision))
-
-    @property
-    def free(self) -> float:
-        """Residuals minus coefficients that they determine: expected sum of squares where the model explains the shapes."""
-        return max(float(self.problem.counts(self.times).sum()) - sum(float(of_law.sum()) for of_law in self.known()), 1.0)
-
-    @property
-    def is_missed(self) -> bool:
-        """Whether residuals exceed the noise by more than its error and chance."""
-        return float(self.misfits.sum()) > (1 + NOISE_ERROR) ** 2 * largest_by_chance(self.free)
-
-    def adapt(self) -> bool:
-        """Set the prior's spread by its evidence, and the misfit's weight if it exceeds the noise. Returns whether they changed."""
-        known, free = self.known(), self.free
-        before = np.append(self.spreads, self.weight**-0.5)
-        if self.given_spread is None:
-            for k, (field, v, of_law) in enumerate(zip(self.problem.fields, self.problem.by_law(self.v), known)):
-                varied = ~field.is_common
-                if of_law[varied].sum() > 0:
-                    spread = math.sqrt(float(field.unit_precision[varied] @ v[varied]**2) / float(of_law[varied].sum()))
-                    self.spreads[k] = min(max(spread, SPREADS[0]), SPREADS[1])
-        self.weight = min(1.0, free / max(float(self.misfits.sum()), TINY))
-        return bool(np.abs(np.log(np.append(self.spreads, self.weight**-0.5) / before)).max() > 0.1)
-
-    def fit(self, most_runs: int, after_step: Callable[[], None]) -> None:
-        """Iterate to the minimum: first for the first time alone, then with the next one, and so on."""
-        last = len(self.problem.times_min)
-        for times in range(max(self.times, 1), last + 1):
-            self.begin(times)
-            adapted = 0  # times since the last step
-            while self.problem.runs < most_runs:
-                distance, value = self.distance, self.value(self.v, self.misfits)
-                if times < last and (distance < CONVERGED_EARLY or self._is_slow):
-                    self._is_slow = False
-                    break
-                if times == last and (distance < CONVERGED or self._is_slow):
-                    self._is_slow = False
-                    self.converged = (not self.adapt() or adapted == MOST_ADAPTED) and distance < CONVERGED
-                    if self.converged:
-                        break
-                    adapted += 1
-                    continue
-                if not self.step():
-                    break
-                adapted = 0
-                slow, after = (SLOW, SLOW_AFTER) if times == last else (SLOW_EARLY, 1)
-                self._is_slow = len(self.steps) > after and self.value(self.v, self.misfits) > (1 - slow) * value
-                after_step()
-
-    def curvatures(self) -> list[tuple[slice, Array]]:
-        """Return the Gauss-Newton Hessian of half the misfit by log factors at the present point: whole, or in blocks of laws."""
-        if self.given_probes is None and len(self.v) <= MOST_WHOLE:
-            return [(slice(None), self.problem.curvature(self.tape, self.v, self.times))]
-        self.probe()
-        blocks, first = [], 0
-        for field, curvature, seen in zip(self.problem.fields, self.equal_curvature, self.seen):
-            law = slice(first, first := first + len(field.acting))
-            blocks.append((law, (field.vectors * curvature) @ field.vectors.T * np.outer(seen, seen)))
-        return blocks
-
-    def state(self) -> dict[str, Any]:
-        """Return what a later session continues from."""
-        return {"v": self.v, "spreads": self.spreads, "weight": self.weight, "times": self.times, "runs": self.problem.runs}
-
-    def restore(self, state: Mapping[str, Any]) -> None:
-        self.v, self.spreads, self.weight = np.array(state["v"]), np.array(state["spreads"]), float(state["weight"])
-        self.times, self.problem.runs = int(state["times"]), int(state["runs"])
 
 
 @dataclass(frozen=True)
@@ -391,8 +205,8 @@ def infer(
 
     Notes
     -----
-    Maximum of the posterior for Gaussian noise and a Gaussian prior of log factors, by L-BFGS; intervals by Laplace's
-    approximation. A run that fails shortens a step. Shapes after a furrow closes are compared last, since earlier ones guide to them.
+    Maximum of the posterior for Gaussian noise and a Gaussian prior of log factors, by L-BFGS; for more than 200 factors by Gauss-Newton
+    steps, each for a few runs' time on top of the recorded one. Intervals by Laplace's approximation. A run that fails shortens a step. Shapes after a furrow closes are compared last, since earlier ones guide to them.
 
     Examples
     --------
@@ -425,18 +239,18 @@ def infer(
         raise ValueError(f"drift: {told(axes)}; give axes, such as \"xy\", each once")
     times_min, residuals = _residuals(own, simulation, shapes, surface, noise, ["xyz".index(axis) for axis in axes])
     problem = Problem(own, [Field(simulation, law, length_um) for law in laws], times_min, residuals, whole(threads, "threads", 1, 1024))
-    descent = _Descent(problem, spread, None if probes is None else whole(probes, "probes", 1))
-    keep = None if file is None else _Kept(path_of(file, "file"), descent)
+    search = Search(problem, spread, None if probes is None else whole(probes, "probes", 1))
+    keep = None if file is None else _Kept(path_of(file, "file"), search)
     limit = whole(most_runs, "most_runs", 1)
 
     def after_step() -> None:
         if keep is not None:
             keep.write()
         if progress:
-            _tell(descent)
+            _tell(search)
 
-    descent.fit(limit, after_step)
-    found = _result(descent)
+    search.fit(limit, after_step)
+    found = _result(search)
     if found.has_model_error:
         worst = int(np.argmax(found.misfit))
         warnings.warn(f"infer: residuals are {found.misfit[worst]:.2f} times the noise at {found.times_min[worst]:g} min, more than chance "
@@ -485,12 +299,12 @@ def _residuals(scenario: Scenario, simulation: Simulation, shapes: Any, surface:
 class _Kept:
     """File of a search that a later session continues."""
 
-    def __init__(self, path: str, descent: _Descent) -> None:
-        self.path, self.descent = Path(path), descent
-        problem = descent.problem
+    def __init__(self, path: str, search: Search) -> None:
+        self.path, self.search = Path(path), search
+        problem = search.problem
         told_apart = hashlib.sha256(problem.scenario.to_toml().encode())
         laws = [(field.law, field.length_um) for field in problem.fields]
-        for part in (*laws, *problem.times_min, descent.given_spread, problem.residuals.drift):
+        for part in (*laws, *problem.times_min, search.given_spread, problem.residuals.drift):
             told_apart.update(repr(part).encode())
         for target in problem.residuals.targets:
             told_apart.update(target.given().tobytes())
@@ -501,37 +315,37 @@ class _Kept:
     def _read(self) -> None:
         try:
             with np.load(self.path) as stored:
-                state = {name: stored[name] for name in ("problem", *self.descent.state())}
+                state = {name: stored[name] for name in ("problem", *self.search.state())}
         except (OSError, EOFError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
             raise FileError(f"{self.path}: is damaged, or not of a search by plica.infer; choose another file ({error})") from error
         if str(state["problem"]) != self.problem:
             raise ValueError(f"file: {self.path} is of a search with another scenario, other shapes or settings; choose another file")
-        self.descent.restore(state)
+        self.search.restore(state)
 
     def write(self) -> None:
         part = self.path.with_name(self.path.name + ".part")
         try:
             with open(part, "wb") as stream:
-                np.savez(stream, problem=self.problem, **self.descent.state())
+                np.savez(stream, problem=self.problem, **self.search.state())
             os.replace(part, self.path)
         except OSError as error:
             raise FileError(f"{self.path}: cannot be written: {error.strerror}") from error
 
 
-def _tell(descent: _Descent) -> None:
-    times = descent.problem.times_min[: descent.times]
-    misfits = np.sqrt(descent.misfits / descent.problem.counts(descent.times))
-    sys.stderr.write(f"run {descent.problem.runs}: misfit / noise "
+def _tell(search: Search) -> None:
+    times = search.problem.times_min[: search.times]
+    misfits = np.sqrt(search.misfits / search.problem.counts(search.times))
+    sys.stderr.write(f"run {search.problem.runs}: misfit / noise "
                      + ", ".join(f"{misfit:.2f} at {time:g} min" for misfit, time in zip(misfits, times)) + "\n")
 
 
-def _result(descent: _Descent) -> Inference:
-    problem = descent.problem
-    logs = problem.logs(descent.v)
+def _result(search: Search) -> Inference:
+    problem = search.problem
+    logs = problem.logs(search.v)
     factors = np.exp(np.concatenate(logs))
     scale = float(factors.mean())
-    covariance, prior = _variances(descent, factors / factors.sum())
-    counts = problem.counts(descent.times)
+    covariance, prior = _variances(search, factors / factors.sum())
+    counts = problem.counts(search.times)
 
     def by_law(values: Array) -> dict[str, Array]:
         found: dict[str, Array] = {}
@@ -542,22 +356,22 @@ def _result(descent: _Descent) -> Inference:
 
     return Inference(
         scenario=problem.scenario.copy(), factors=by_law(factors / scale), sd=by_law(np.sqrt(covariance)), unseen=by_law(np.minimum(covariance / prior, 1)), scale=scale,
-        times_min=np.array(problem.times_min[: descent.times]), misfit=np.sqrt(descent.misfits / counts), excess=descent.weight**-0.5,
-        spread={field.law: float(one) for field, one in zip(problem.fields, descent.spreads)},
-        length_um={field.law: field.length_um for field in problem.fields}, runs=problem.runs, converged=descent.converged,
-        has_model_error=descent.is_missed)
+        times_min=np.array(problem.times_min[: search.times]), misfit=np.sqrt(search.misfits / counts), excess=search.weight**-0.5,
+        spread={field.law: float(one) for field, one in zip(problem.fields, search.spreads)},
+        length_um={field.law: field.length_um for field in problem.fields}, runs=problem.runs, converged=search.converged,
+        has_model_error=search.is_missed)
 
 
-def _variances(descent: _Descent, parts: Array) -> tuple[Array, Array]:
+def _variances(search: Search, parts: Array) -> tuple[Array, Array]:
     """Return posterior and prior variances of the logarithm of each factor over the mean factor; `parts` are factors, of sum 1."""
     size, first = len(parts), 0
     prior, precision = np.zeros((2, size, size))
-    for field, of_law in zip(descent.problem.fields, descent.problem.by_law(descent.precision)):
+    for field, of_law in zip(search.problem.fields, search.problem.by_law(search.precision)):
         law = slice(first, first := first + len(field.acting))
         prior[law, law] = (field.vectors / of_law) @ field.vectors.T
         precision[law, law] = (field.vectors * of_law) @ field.vectors.T
-    for part, curvature in descent.curvatures():
-        precision[part, part] += descent.weight * curvature
+    for part, curvature in search.curvatures():
+        precision[part, part] += search.weight * curvature
     posterior = np.linalg.inv(precision)
     found = [np.diag(one) - 2 * one @ parts + parts @ one @ parts for one in (posterior, prior)]
     return found[0], found[1]

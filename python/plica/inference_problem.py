@@ -18,6 +18,9 @@ COMMON_SPREAD = 1.0  # of the log of the common factor
 SMOOTH_PART = 0.5  # of the prior variance, which correlates between neighbours
 FIRST_BAND, BAND_RATIO = 4, 1.7  # size of the first band of eigenvectors that share a curvature, and ratio of the ends of others
 CHANGE = 1e-3  # of a log factor, for its derivatives
+COARSER = 20  # times the tolerance of steps, for linearised runs
+LONGER = 4  # times the longest step, or the given one
+LINEAR_TOLERANCE = 1e-3  # of solves in linearised runs
 
 
 class Field:
@@ -108,6 +111,16 @@ class Problem:
                              "cell; leave out later shapes, or remove division and exchange from the scenario")
         return tape
 
+    def run_coarsely(self, v: Array, times: int) -> Tape:
+        """Record the same run in longer steps, for derivatives where an error of some percent does no harm."""
+        coarse = self.scenario.copy()
+        if coarse["time.step_s"] == "adaptive":
+            coarse.update({"time.tolerance_um": COARSER * float(coarse["time.tolerance_um"]), "output.frame_every_s": 0,
+                           "time.max_step_s": LONGER * float(coarse["time.max_step_s"])})
+        else:
+            coarse["time.step_s"] = LONGER * float(coarse["time.step_s"])
+        return record(coarse, at_min=self.times_min[:times], until_min=self.times_min[times - 1], strengths=self.factors(v), threads=self.threads)
+
     def misfits(self, tape: Tape, times: int) -> Array:
         """Return the sum of squared residuals at each of the first times."""
         return self.residuals.of(self._positions(tape, times))[1]
@@ -115,16 +128,29 @@ class Problem:
     def _positions(self, tape: Tape, times: int) -> list[Array]:
         return [tape.positions(time) for time in self.times_min[:times]]
 
-    def by_logs(self, tape: Tape, v: Array, by_positions: Array) -> list[Array]:
+    def by_logs(self, tape: Tape, v: Array, by_positions: Array, tolerance: float = 1e-6) -> list[Array]:
         """Return the gradient by log factors of acting cells of each law, from that by positions at the first times."""
         at = self.times_min[: len(by_positions)]
-        return [np.exp(log) * tape.gradient(by_positions, of=field.law, by="cell", at_min=at, tolerance=1e-6)[field.acting]
+        return [np.exp(log) * tape.gradient(by_positions, of=field.law, by="cell", at_min=at, tolerance=tolerance)[field.acting]
                 for field, log in zip(self.fields, self.logs(v))]
+
+    def coefficients(self, by_law: list[Array]) -> Array:
+        """Return the gradient by coefficients from that by log factors of each law."""
+        return np.concatenate([field.vectors.T @ part for field, part in zip(self.fields, by_law)])
 
     def gradient(self, tape: Tape, v: Array, times: int) -> Array:
         """Return the gradient of half the misfit by coefficients."""
         by_positions = self.residuals.gradients(self._positions(tape, times))
-        return np.concatenate([field.vectors.T @ part for field, part in zip(self.fields, self.by_logs(tape, v, by_positions))])
+        return self.coefficients(self.by_logs(tape, v, by_positions))
+
+    def product(self, tape: Tape, v: Array, change: Array, times: int) -> Array:
+        """Return the product of the Gauss-Newton Hessian of half the misfit with a change of coefficients."""
+        along = {}
+        for field, log, changed in zip(self.fields, self.logs(v), self.logs(change)):
+            along[field.law] = np.zeros(field.cells)
+            along[field.law][field.acting] = np.exp(log) * changed
+        motions = tape._along(along, self.times_min[:times], LINEAR_TOLERANCE)
+        return self.coefficients(self.by_logs(tape, v, self.residuals.product(self._positions(tape, times), motions), LINEAR_TOLERANCE))
 
     def probe(self, tape: Tape, v: Array, times: int, rng: np.random.Generator) -> list[Array]:
         """Return the gradient by log factors of a sum of residuals with independent normal weights."""

@@ -13,6 +13,7 @@ from .results import Frame
 from .whole_cells import Mesh, WholeCells
 
 Array = NDArray[np.float64]
+CHANGE_UM = 1e-4  # of positions, for the derivatives of residuals along a motion
 FITS = "positions of nodes, a Frame, Polygons, or a mapping with centres_um, areas_um2, centroids_um or moments_um2 of cells"
 
 
@@ -170,6 +171,13 @@ class Residuals:
     def gradients(self, positions: list[Array]) -> Array:
         """Return the gradient of half the sum of squares by positions at each of the first times."""
         return self._pulled(positions, self.of(positions)[0])
+
+    def product(self, positions: list[Array], motions: Array) -> Array:
+        """Return the gradient by positions of half the sum of squares of the changes of residuals along these motions of nodes."""
+        size = CHANGE_UM / max(float(np.abs(motions).max()), np.finfo(float).tiny)
+        more, less = [self._raw([one + part * motion for one, motion in zip(positions, motions)]) for part in (size, -size)]
+        slopes = [(high - low) / (2 * size) for high, low in zip(more, less)]
+        return self._pulled(positions, self._parted(slopes, 0.0)[0])
 
     def curvature(self, positions: list[Array], changed: Iterable[list[Array]], change: float) -> Array:
         """Return the Gauss-Newton Hessian of half the sum of squares by parameters, from positions at the first times after each of them has

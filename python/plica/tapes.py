@@ -265,6 +265,11 @@ class Tape:
         slopes = self._rows([(outcome, time) for outcome in given for time in times], keys, tolerance)[1]
         return slopes.reshape(len(given), len(times), len(keys))
 
+    def _along(self, change: Mapping[str, ArrayLike], at_min: Iterable[float], tolerance: float) -> Array:
+        """Return the derivatives of positions at these times along a change of factors on strengths; shape (times, nodes, 3)."""
+        found = self._core.tangent({law: np.asarray(of_cells).tolist() for law, of_cells in change.items()}, self._states(at_min), tolerance)
+        return np.stack(found)
+
     def _rows(self, rows: list[tuple[Any, Optional[float]]], keys: list[str], tolerance: float) -> tuple[Array, Array]:
         """Return values and derivatives by keys, one row per outcome and time."""
         accuracy = number_from(tolerance, 0, "tolerance", "a number above 0", above=True)

@@ -175,6 +175,22 @@ std::unique_ptr<Model> Tape::solved_model(const Variant& changed) const {
   return std::move(parts.model);
 }
 
+std::unique_ptr<Model> Tape::solved_model(const StrengthFactors& change, double times) const {
+  auto model = std::make_unique<Model>(*solved_);
+  for (const auto& [label, of_cells] : change) {
+    const std::size_t law = place_of_law(*solved_, label);
+    const auto given = strengths_.find(label);
+    std::vector<double> factors;
+    for (std::size_t c = 0; c < solved_->tissue.cells.size(); ++c) {
+      const std::size_t of_whole = mirror_.is_used() ? mirror_.origins[c].index() : c;
+      factors.push_back((given == strengths_.end() ? 1.0 : given->second[of_whole]) + times * of_cells[of_whole]);
+    }
+    const auto unscaled = unscaled_.find(law);
+    model->laws[law] = with_strengths(unscaled == unscaled_.end() ? *model->laws[law] : *unscaled->second, factors);
+  }
+  return model;
+}
+
 ModelPair Tape::parameter(std::string name, const Variant& more, const Variant& less, double difference) const {
   for (const char* rule : {"division.", "exchange.", "extrusion."})
     if (name.starts_with(rule))
@@ -227,17 +243,9 @@ std::optional<RunGradient> Tape::gradient_by_tangents(const OutcomeGradient& out
   std::vector<ModelPair> of_cells;
   for (std::size_t c = 0; c < cells; ++c) {
     constexpr double change = 1e-4;
-    const std::size_t law = place_of_law(*solved_, wanted.law);
-    const auto changed = [&](double by) {
-      const auto given = strengths_.find(wanted.law);
-      std::vector<double> factors = given == strengths_.end() ? std::vector<double>(cells, 1.0) : given->second;
-      factors[c] += by;
-      auto model = std::make_unique<Model>(*solved_);
-      const auto unscaled = unscaled_.find(law);
-      model->laws[law] = with_strengths(unscaled == unscaled_.end() ? *model->laws[law] : *unscaled->second, factors);
-      return model;
-    };
-    of_cells.push_back({wanted.law, changed(change), changed(-change), 2 * change});
+    StrengthFactors of_cell{{wanted.law, std::vector<double>(cells, 0.0)}};
+    of_cell[wanted.law][c] = 1;
+    of_cells.push_back({wanted.law, solved_model(of_cell, change), solved_model(of_cell, -change), 2 * change});
   }
   TangentInput input{wanted.parameters, wanted.tolerance, wanted.stop_requested};
   for (const ModelPair& pair : of_cells) input.parameters.push_back(&pair);
@@ -266,6 +274,25 @@ std::optional<std::vector<std::vector<double>>> Tape::jacobian(const std::vector
   };
   if (!tangents(parts_, method_.linear_method, last, wanted, add)) return std::nullopt;
   return rows;
+}
+
+std::optional<std::vector<Vectors>> Tape::tangent(const StrengthFactors& change, std::span<const std::size_t> states,
+                                                  const TangentInput& wanted) const {
+  double largest = 0;
+  for (const auto& [law, of_cells] : change)
+    for (const double of_cell : of_cells) largest = std::max(largest, std::abs(of_cell));
+  const double size = largest > 0 ? 1e-4 / largest : 1;
+  const ModelPair pair{"strengths", solved_model(change, size), solved_model(change, -size), 2 * size};
+  TangentInput input = wanted;
+  input.parameters = {&pair};
+  std::vector<Vectors> found(states.size());
+  const auto take = [&](std::size_t state, std::span<const Vectors> by_parameter) {
+    for (std::size_t place = 0; place < states.size(); ++place)
+      if (states[place] == state)
+        found[place] = mirror_.is_used() ? mirror_.full_vectors(by_parameter[0]) : by_parameter[0];
+  };
+  if (!tangents(parts_, method_.linear_method, *std::ranges::max_element(states), input, take)) return std::nullopt;
+  return found;
 }
 
 Tape Tape::replayed(const Variant& changed, const StrengthFactors& strengths) const {

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -98,6 +99,12 @@ class Tape {
   [[nodiscard]] std::optional<std::vector<std::vector<double>>> jacobian(const std::vector<OutcomeGradient>& outcomes,
                                                                          const TangentInput& wanted) const;
 
+  /// Return the derivatives of positions at some states along a change of strengths: of factors, by law and cell. Empty
+  /// if stopped.
+  [[nodiscard]] std::optional<std::vector<Vectors>> tangent(const StrengthFactors& change,
+                                                            std::span<const std::size_t> states,
+                                                            const TangentInput& wanted) const;
+
   /// Repeat the same steps with tight tolerances, for a changed run or other strengths: an oracle of gradients.
   [[nodiscard]] Tape replayed(const Variant& changed, const StrengthFactors& strengths) const;
   [[nodiscard]] const Scenario& scenario() const { return *scenario_; }
@@ -119,6 +126,8 @@ class Tape {
     return changed.add ? changed.add : add_;
   }
   [[nodiscard]] std::unique_ptr<Model> solved_model(const Variant& changed) const;
+  /// Return the solved model with factors on strengths changed by this times a change of each cell of the whole embryo.
+  [[nodiscard]] std::unique_ptr<Model> solved_model(const StrengthFactors& change, double times) const;
   /// Return the gradient by positions of the solved side.
   [[nodiscard]] OutcomeGradient of_solved_side(const OutcomeGradient& outcome) const;
 

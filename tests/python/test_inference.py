@@ -2,6 +2,7 @@
 import numpy as np
 import plica
 import pytest
+from plica import inference_search
 from plica.inference import _residuals
 from plica.inference_problem import Field, Problem
 from plica.knots import divided
@@ -268,6 +269,31 @@ def test_curvature_is_that_of_the_misfit(block_shape):
             v = vectors.T @ (log + sign * 1e-3 * (np.arange(16) == cell))
             ends.append(vectors @ problem.gradient(tape._with_strengths(problem.factors(v)), v, 2))
         assert found[cell] == pytest.approx((ends[0] - ends[1]) / 2e-3, abs=0.01 * found[cell, cell])
+        product = vectors @ problem.product(tape, vectors.T @ log, vectors[cell], 2)
+        assert product == pytest.approx(found[cell], abs=0.005 * found[cell, cell])
+
+
+def test_many_factors_take_gauss_newton_steps(block_shape, tmp_path, monkeypatch):
+    """They reach the minimum of L-BFGS in fewer runs; with any threads, and after an interruption, bitwise."""
+    shapes, how = {1: block_shape[1]}, dict(of=LAW, noise_um=0.02, spread=0.3, probes=6)
+    few = plica.infer(BLOCK, shapes, **how)
+    monkeypatch.setattr(inference_search, "MOST_WHOLE", 10)
+    found = plica.infer(BLOCK, shapes, **how)
+    assert found.converged and found.runs < few.runs
+    assert np.log(found.factors[LAW]) == pytest.approx(np.log(few.factors[LAW]), abs=0.3 * few.sd[LAW].min())
+    kept = tmp_path / "search.npz"
+    assert not plica.infer(BLOCK, shapes, most_runs=2, file=kept, **how).converged
+    for again in (plica.infer(BLOCK, shapes, file=kept, **how), plica.infer(BLOCK, shapes, threads=3, **how)):
+        assert again.converged and np.array_equal(again.factors[LAW], found.factors[LAW])
+
+
+def test_a_coarse_run_that_fails_is_replaced(block_shape, monkeypatch):
+    def fails(*_):
+        raise plica.NumericsError("no step converges", None, 0.0)
+
+    monkeypatch.setattr(inference_search, "MOST_WHOLE", 10)
+    monkeypatch.setattr(Problem, "run_coarsely", fails)
+    assert plica.infer(BLOCK, {1: block_shape[1]}, of=LAW, noise_um=0.02, probes=6).converged
 
 
 def test_whole_cells_are_bricks_and_turn():

@@ -127,6 +127,14 @@ inline void expect_gradient(const TapeCase& c, std::size_t least_changes = 0) {
   if (!c.overrides.empty() && c.overrides.back().find("mirror") != std::string::npos)
     direction.assign(direction.size(), 1);
   expect_as_differences("all cells", along(), scaled);
+  const auto moved = tape.tangent({{c.law, direction}}, states, {.tolerance = 1e-11});
+  ASSERT_TRUE(moved && moved->size() == states.size());
+  double by_tangent = 0;
+  for (std::size_t k = 0; k < states.size(); ++k)
+    for (std::size_t n = 0; n < (*moved)[k].size(); ++n) by_tangent += by_positions[states[k]][n].dot((*moved)[k][n]);
+  const double error = std::abs(by_tangent - along()) / (std::abs(along()) + floor);
+  EXPECT_LE(error, c.between_ways) << "all cells: " << by_tangent << ", " << along();
+  fmt::print("{:44} tangent and way back differ by {:.1e}\n", "all cells", error);
   if (direction.front() == direction.back()) return;
   const auto size = [](double a, double b) { return std::abs(a) < std::abs(b); };
   const auto largest = std::ranges::max_element(by_strength, size) - by_strength.begin();
