@@ -137,7 +137,9 @@ class Search:
         self.v, self.misfits, self.slope, self._direction = v, misfits, slope, None
         if self.is_large:
             self.linearise()
-        elif step @ (self.weight * change + self.precision * step) > 0:
+            return
+        self.linear = self.tape
+        if step @ (self.weight * change + self.precision * step) > 0:
             self.steps.append(step)
             self.changes.append(change)
 
