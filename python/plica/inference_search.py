@@ -151,13 +151,13 @@ class Search:
         first = rest = float(left @ (left / diagonal))
         along = left / diagonal
         for _ in range(MOST_PRODUCTS):
+            if rest <= LEFT**2 * first:
+                break
             product = self.weight * self.problem.product(self.linear, self.v, along, self.times) + precision * along
             length = rest / float(along @ product)
             found += length * along
             left -= length * product
             before, rest = rest, float(left @ (left / diagonal))
-            if rest < LEFT**2 * first:
-                break
             along = left / diagonal + rest / before * along
         return found
 
