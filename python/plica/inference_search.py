@@ -137,7 +137,9 @@ class Search:
         self.v, self.misfits, self.slope, self._direction = v, misfits, slope, None
         if self.is_large:
             self.linearise()
-        elif step @ (self.weight * change + self.precision * step) > 0:
+            return
+        self.linear = self.tape
+        if step @ (self.weight * change + self.precision * step) > 0:
             self.steps.append(step)
             self.changes.append(change)
 
@@ -149,13 +151,13 @@ class Search:
         first = rest = float(left @ (left / diagonal))
         along = left / diagonal
         for _ in range(MOST_PRODUCTS):
+            if rest <= LEFT**2 * first:
+                break
             product = self.weight * self.problem.product(self.linear, self.v, along, self.times) + precision * along
             length = rest / float(along @ product)
             found += length * along
             left -= length * product
             before, rest = rest, float(left @ (left / diagonal))
-            if rest < LEFT**2 * first:
-                break
             along = left / diagonal + rest / before * along
         return found
 

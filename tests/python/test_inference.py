@@ -287,6 +287,22 @@ def test_many_factors_take_gauss_newton_steps(block_shape, tmp_path, monkeypatch
         assert again.converged and np.array_equal(again.factors[LAW], found.factors[LAW])
 
 
+@pytest.mark.parametrize("most_whole, tries", [(200, 1), (10, 2)])
+def test_a_search_ends_where_no_step_helps(block_shape, monkeypatch, most_whole, tries):
+    """Few factors: derivatives are those of the last run, also for the final curvature. Many: a step by that run itself is tried first."""
+    monkeypatch.setattr(inference_search, "MOST_WHOLE", most_whole)
+    simulation = plica.Simulation(BLOCK)
+    times, residuals = _residuals(BLOCK, simulation, {1: block_shape[1]}, "apical", 0.02, [])
+    search = inference_search.Search(Problem(BLOCK, [Field(simulation, LAW, None)], times, residuals, 1), 0.3, 6)
+    search.fit(2, lambda: None)
+    assert search.problem.runs == 2 and (search.linear is search.tape) == (tries == 1)
+    failed = []
+    monkeypatch.setattr(search, "step", lambda: failed.append(search.linear is search.tape))
+    monkeypatch.setattr(search, "begin", lambda times: None)
+    search.fit(9, lambda: None)
+    assert failed == [False, True][-tries:] and not search.converged
+
+
 def test_a_coarse_run_that_fails_is_replaced(block_shape, monkeypatch):
     def fails(*_):
         raise plica.NumericsError("no step converges", None, 0.0)
