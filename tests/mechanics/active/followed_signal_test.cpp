@@ -126,13 +126,6 @@ prestretch = 1.3
 region = "all"
 faces = "apical"
 stiffness_nN_per_um3 = 0.02
-[contraction.above]
-region = "all"
-stiffness_nN_per_um = 0.5
-[pressure.below]
-region = "all"
-face = "basal"
-pressure_Pa = 20
 [time]
 end_s = 60
 step_s = 0.5
@@ -147,22 +140,28 @@ TEST(FollowedSignal, FallsAsAProgramDoes) {
     times += fmt::format("{}{}", t == 0 ? "" : ",", t);
     activities += fmt::format("{}{}", t == 0 ? "" : ",", std::exp(-t / 30.0));
   }
-  for (const std::string table : {"matrix.below", "foundation.above", "contraction.above", "pressure.below"}) {
-    Simulation follows(scenario_of(bonded, {table + ".follow={signal=\"u\",from=0,to=1}"})),
-        falls(scenario_of(bonded, {fmt::format("{}.program={{time_s=[{}],activity=[{}]}}", table, times, activities)})),
-        stays(scenario_of(bonded));
+  const std::string springs = "[contraction.above]\nregion = \"all\"\nstiffness_nN_per_um = 0.5\n",
+                    load = "[pressure.below]\nregion = \"all\"\nface = \"basal\"\npressure_Pa = 20\n";
+  for (const auto& [table, active] : std::vector<std::pair<std::string, std::string>>{
+           {"matrix.below", ""}, {"foundation.above", ""}, {"contraction.above", springs}, {"pressure.below", load}}) {
+    const std::string text = bonded + active;
+    Simulation follows(scenario_of(text, {table + ".follow={signal=\"u\",from=0,to=1}"})),
+        falls(scenario_of(text, {fmt::format("{}.program={{time_s=[{}],activity=[{}]}}", table, times, activities)})),
+        stays(scenario_of(text));
     for (Simulation* run : {&follows, &falls, &stays}) EXPECT_EQ(run->run(), RunStatus::end_time) << run->failure();
     const double change = largest_distance(falls.state().positions, stays.state().positions);
     EXPECT_GT(change, 0.1) << table;
     EXPECT_LT(largest_distance(follows.state().positions, falls.state().positions), 0.03 * change) << table;
     const std::size_t law = place_of_law(falls.model(), table);
     const EnergyFlow one = follows.memory().energies[law], other = falls.memory().energies[law];
-    EXPECT_GT(other.dissipated + other.active, 0);
+    EXPECT_GT(other.dissipated + std::abs(other.active), 0);
     EXPECT_NEAR(one.dissipated, other.dissipated, 0.03 * other.dissipated) << table;
     EXPECT_NEAR(one.stored, other.stored, 0.03 * std::abs(other.stored) + 0.01 * other.dissipated) << table;
     // Cells act by the beginning of a step: by 1.7 % too much, and the work of a force is quadratic in it.
-    EXPECT_NEAR(one.active, other.active, 0.05 * other.active + 1e-12) << table;
-    EXPECT_LT(std::abs(*follows.measures()["energy_imbalance_ratio"]), 0.01) << table;
+    EXPECT_NEAR(one.active, other.active, 0.05 * std::abs(other.active) + 1e-12) << table;
+    // What acts suddenly at first, in steps of this length, leaves an error of its own.
+    const auto imbalance = [](Simulation& run) { return std::abs(*run.measures()["energy_imbalance_ratio"]); };
+    EXPECT_LT(imbalance(follows), 0.01 + (active.empty() ? 0 : imbalance(falls))) << table;
   }
 }
 
