@@ -1,6 +1,8 @@
 // Laws that follow a signal: growth, layers of matrix, foundations, springs, pressures.
 #include "mechanics/active/followed_signal.hpp"
 
+#include <regex>
+
 #include "mechanics/active/contraction.hpp"
 #include "mechanics/derivatives.hpp"
 #include "mechanics/foundation.hpp"
@@ -144,7 +146,9 @@ TEST(FollowedSignal, FallsAsAProgramDoes) {
                     load = "[pressure.below]\nregion = \"all\"\nface = \"basal\"\npressure_Pa = 20\n";
   for (const auto& [table, active] : std::vector<std::pair<std::string, std::string>>{
            {"matrix.below", ""}, {"foundation.above", ""}, {"contraction.above", springs}, {"pressure.below", load}}) {
-    const std::string text = bonded + active;
+    // Beside springs and loads the layer is at rest: its contraction would undo most of their work.
+    const std::string text =
+        active.empty() ? bonded : std::regex_replace(bonded, std::regex("prestretch = 1.3"), "prestretch = 1") + active;
     Simulation follows(scenario_of(text, {table + ".follow={signal=\"u\",from=0,to=1}"})),
         falls(scenario_of(text, {fmt::format("{}.program={{time_s=[{}],activity=[{}]}}", table, times, activities)})),
         stays(scenario_of(text));
