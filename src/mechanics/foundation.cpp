@@ -8,9 +8,9 @@
 namespace plica {
 
 Foundation::Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule rule)
-    : rule_(std::move(rule)),
+    : SignalLaw({tissue, rule.follow}),
+      rule_(std::move(rule)),
       pattern_(std::move(pattern)),
-      followed_(tissue, rule_.follow),
       anchors_(tissue.rest_positions),
       facets_(tissue.facets(rule_.side)) {
   measure(tissue);
@@ -182,7 +182,7 @@ std::unique_ptr<Law> Foundation::after_change(const Tissue& tissue, const Tissue
                                               std::span<const Vec3> positions) const {
   auto after = std::make_unique<Foundation>(*this);
   after->pattern_ = pattern_.after_change(change);
-  after->followed_ = FollowedSignal(tissue, rule_.follow);
+  after->followed_ = followed_.on(tissue);
   after->anchors_ = with_new_nodes(tissue, change, anchors_);
   tissue.place_hanging_positions(after->anchors_);
   after->facets_ = tissue.facets(rule_.side);
@@ -195,28 +195,6 @@ std::unique_ptr<Law> Foundation::after_change(const Tissue& tissue, const Tissue
   }
   after->support(tissue);
   return after;
-}
-
-std::vector<double> Foundation::first_internal(const Tissue& /*tissue*/) const {
-  return std::vector<double>(followed_.size(), 0);
-}
-
-std::vector<double> Foundation::next_internal(const Step& step) const {
-  std::vector<double> internal(step.internal.begin(), step.internal.end());
-  followed_.move_on(internal);
-  return internal;
-}
-
-std::vector<double> Foundation::internal_after_change(std::span<const double> internal, const Tissue& /*tissue*/,
-                                                      const TissueChange& change, const ChangePositions&) const {
-  return followed_.after_change(internal, change);
-}
-
-std::vector<double> Foundation::with_signals(std::span<const double> internal, std::span<const CellArray> signals,
-                                             double time_s) const {
-  std::vector<double> result(internal.begin(), internal.end());
-  followed_.follow(signals, time_s, result);
-  return result;
 }
 
 const LawDerivatives& Foundation::derivatives() const {
@@ -247,7 +225,7 @@ std::unique_ptr<Law> Foundation::restored(const Tissue& tissue, const TissueChan
   };
   auto law = std::make_unique<Foundation>(*this);
   law->pattern_ = pattern_.after_change(change);
-  law->followed_ = FollowedSignal(tissue, rule_.follow);
+  law->followed_ = followed_.on(tissue);
   law->anchors_ = vectors_from(0);
   law->facets_ = tissue.facets(rule_.side);
   law->is_remeshed_ = past.size() > numbers;

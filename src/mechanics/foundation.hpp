@@ -29,7 +29,7 @@ struct FoundationRule {
 /// nodes are anchored at the mean of those that they lie between. Once cells have been remeshed, anchors of a face tell
 /// neither its area nor its normal: nodes keep their normal, faces their area; those of a cell that is remeshed, or
 /// divides, share that of the cell.
-class Foundation final : public Law, public LawDerivatives {
+class Foundation final : public SignalLaw, public LawDerivatives {
  public:
   Foundation(const Tissue& tissue, CellPattern pattern, FoundationRule rule);
 
@@ -49,15 +49,6 @@ class Foundation final : public Law, public LawDerivatives {
   [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const TissueChange& change,
                                               std::span<const Vec3> positions,
                                               std::span<const double> past) const override;
-
-  /// Return what FollowedSignal has.
-  [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
-  [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
-  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& tissue,
-                                                          const TissueChange& change,
-                                                          const ChangePositions& positions) const override;
-  [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
-                                                 double time_s) const override;
 
   [[nodiscard]] std::vector<double> program_points_s() const override { return rule_.program.times_s(); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return rule_.program.jumps_s(); }
@@ -96,7 +87,6 @@ class Foundation final : public Law, public LawDerivatives {
 
   FoundationRule rule_;
   CellPattern pattern_;
-  FollowedSignal followed_;
   Vectors anchors_;            // nodes; um
   Vectors normals_;            // nodes of the side; out of the tissue
   std::vector<Facet> facets_;  // of the side

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mechanics/active/cell_pattern.hpp"
+#include "mechanics/active/followed_signal.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/derivatives.hpp"
 #include "mechanics/energy.hpp"
@@ -136,45 +137,61 @@ class Inertia final : public NodeLaw<Inertia> {
 };
 
 /// Pressure on apical or basal facets of some cells, directed into the cell: a dead load on reference faces.
-class FacePressure final : public Law {
+class FacePressure final : public SignalLaw {
  public:
-  /// Make the law with `pressure` in kPa, times the strengths of cells; delays are ignored.
-  FacePressure(const Tissue& tissue, CellSide side, CellPattern pattern, double pressure, Program program);
+  /// Make the law with `pressure` in kPa, times the strengths of cells; delays are ignored. `followed`: signal
+  /// that scales the pressure.
+  FacePressure(const Tissue& tissue, CellSide side, CellPattern pattern, double pressure, Program program,
+               FollowedSignal followed = {});
 
   [[nodiscard]] std::string_view name() const override { return "pressure"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<FacePressure>(*this); }
   [[nodiscard]] double energy(const Step& step) const override {
     double work = 0;
-    for (std::size_t n = 0; n < loads_.size(); ++n) work += loads_[n].dot(step.positions[n]);
+    for (const Load& load : loads_)
+      work += followed_.at(step.internal, load.cell) * load.force.dot(step.positions[load.node]);
     return -program_.at(step.end_time_s) * work;
   }
   [[nodiscard]] EnergyFlow energy_flow(const CompletedStep& completed) const override {
+    const Step& step = completed.motion;
     double work = 0;
-    for (std::size_t n = 0; n < loads_.size(); ++n)
-      work += loads_[n].dot(completed.motion.positions[n] - completed.motion.previous_positions[n]);
-    return {.active = program_.at(completed.motion.end_time_s) * work};
+    for (const Load& load : loads_)
+      work += followed_.mean(step.internal, load.cell) *
+              load.force.dot(step.positions[load.node] - step.previous_positions[load.node]);
+    return {.active = program_.at(step.end_time_s) * work};
   }
   void add_forces(const Step& step, std::span<Vec3> forces) const override {
     const double activity = program_.at(step.end_time_s);
-    for (std::size_t n = 0; n < loads_.size(); ++n) forces[n] += activity * loads_[n];
+    for (const Load& load : loads_) forces[load.node] += activity * followed_.at(step.internal, load.cell) * load.force;
   }
   void add_tangent_product(const Step&, std::span<const Vec3>, std::span<Vec3>) const override {}  // constant force
   void add_tangent(const Step&, TangentSink&) const override {}
-  [[nodiscard]] const LawDerivatives& derivatives() const override { return static_derivatives(); }
+  /// NoGradient where cells follow a signal.
+  [[nodiscard]] const LawDerivatives& derivatives() const override {
+    if (followed_.is_used()) refuse_gradient("a pressure that follows a signal has no gradient; remove follow");
+    return static_derivatives();
+  }
   [[nodiscard]] const CellPattern* pattern() const override { return &pattern_; }
   [[nodiscard]] std::vector<double> program_points_s() const override { return program_.times_s(); }
   [[nodiscard]] std::vector<double> program_jumps_s() const override { return program_.jumps_s(); }
   [[nodiscard]] std::unique_ptr<Law> after_change(const Tissue& tissue, const TissueChange& change,
                                                   std::span<const Vec3> /*positions*/) const override {
-    return std::make_unique<FacePressure>(tissue, side_, pattern_.after_change(change), pressure_, program_);
+    return std::make_unique<FacePressure>(tissue, side_, pattern_.after_change(change), pressure_, program_,
+                                          followed_.on(tissue));
   }
 
  private:
+  struct Load {  // on a node, nN at activity 1
+    std::size_t node = 0;
+    CellId cell;  // if it follows a signal; else the load is that of all cells
+    Vec3 force;
+  };
+
   CellSide side_;
   CellPattern pattern_;
   double pressure_;
-  Vectors loads_;  // nodes; nN at activity 1
   Program program_;
+  std::vector<Load> loads_;
 };
 
 }  // namespace plica

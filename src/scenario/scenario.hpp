@@ -167,18 +167,6 @@ struct RegionElasticityInput : ActingInput {  // profile: factor on the modulus
   std::optional<double> relaxation_s;
 };
 
-struct ContractionInput : ActingInput {
-  std::string border;  // region on the other side of a cable; empty: all edges of the cells
-  double stiffness_nN_per_um = 0;
-  double along_ratio = 1;
-  double across_ratio = 1;
-  bool diagonals = false;
-  double rest_length_ratio = 0;
-  double preload_nN = 0;
-  double tension_mN_per_m = 0;
-  double damping_nN_s_per_um = 0;
-};
-
 /// Shape measure (ShapeMeasure) or signal that a cell reads; both empty: none.
 struct ActivationInput {
   std::string measure, signal;
@@ -195,6 +183,19 @@ struct TriggerInput : ActivationInput {
 /// A factor on what a table does that follows a shape (of cortices only) or a signal.
 struct FollowInput : ActivationInput {
   std::optional<double> from, to;
+};
+
+struct ContractionInput : ActingInput {
+  std::string border;  // region on the other side of a cable; empty: all edges of the cells
+  double stiffness_nN_per_um = 0;
+  double along_ratio = 1;
+  double across_ratio = 1;
+  bool diagonals = false;
+  double rest_length_ratio = 0;
+  double preload_nN = 0;
+  double tension_mN_per_m = 0;
+  double damping_nN_s_per_um = 0;
+  FollowInput follow;  // signal
 };
 
 /// Tension along a direction: lateral faces have a factor by the angle between their normal and an axis, others fibres.
@@ -364,6 +365,7 @@ struct HoldInput {
 
 struct PressureInput : ActingInput {
   double pressure_Pa = 0;  // into the cell; dead load on the reference face
+  FollowInput follow;      // signal
 };
 
 /// Springs and drag that hold faces to their reference positions; the program scales the springs.

@@ -91,12 +91,10 @@ std::span<const InnerTables> inner_tables() {
       {"Trigger and follow",
        {"trigger", "follow"},
        "Cell-autonomous activity, by shape or `[signal.NAME]`. `trigger` starts both time courses of a cell at a "
-       "threshold; "
-       "before, tension is 0 and stiffness that of time 0. `follow` multiplies the active tension by a linear function "
-       "of it; by a signal, also the rate of `[growth.NAME]` and the stiffness of `[foundation.NAME]` and "
-       "`[matrix.NAME]`. Shape is measured at the start of each step, relative to the reference state; "
-       "`apical_stretch` "
-       "is the largest stretch of the apical surface."},
+       "threshold; before, tension is 0 and stiffness that of time 0. `follow` multiplies the active tension by a "
+       "linear function of it; by a signal, also `[contraction.NAME]`, `[pressure.NAME]`, `[growth.NAME]` and the "
+       "stiffness of `[foundation.NAME]` and `[matrix.NAME]`. Shape is measured at the start of each step, relative to "
+       "the reference state; `apical_stretch` is the largest stretch of the apical surface."},
       {"Profile",
        {"profile"},
        "Spatial profile: amplitude factor per cell, by distance d from the centre of the region, from `middle` at the "

@@ -146,7 +146,7 @@ class Draw {
   void follow() {
     const auto has = [&](const std::string& table) { return text_.find("[" + table + "]") != std::string::npos; };
     if (!has("signal.u") || text_.size() % 2 == 0) return;
-    for (const std::string table : {"growth.one", "matrix.one", "foundation.one"})
+    for (const std::string table : {"growth.one", "matrix.one", "foundation.one", "contraction.one", "pressure.one"})
       if (has(table)) add("[{}.follow]\nsignal = \"u\"\nfrom = 0\nto = 1\n", table);
   }
 

@@ -103,19 +103,21 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
   return springs;
 }
 
-double Contraction::activity(CellId cell, double delay_s, double time_s, std::span<const double> internal) const {
+double Contraction::activity(CellId cell, double delay_s, double time_s, std::span<const double> internal,
+                             double following) const {
   const double part = pattern_.remaining(cell, time_s);
-  if (const auto given = GivenActivities(internal).of(cell)) return part * *given;
-  return part * program_.delayed_at(delay_s, time_s) * pattern_.pulse(cell, time_s);
+  if (const auto instead = given(internal).of(cell)) return part * *instead;
+  return part * program_.delayed_at(delay_s, time_s) * pattern_.pulse(cell, time_s) * following;
 }
 
 double Contraction::activity(const Spring& spring, const Step& step) const {
-  return activity(spring.cell, spring.delay_s, step.end_time_s, step.internal);
+  return activity(spring.cell, spring.delay_s, step.end_time_s, step.internal,
+                  followed_.at(followed(step.internal), spring.cell));
 }
 
 std::optional<double> Contraction::activity_of(CellId cell, double time_s, std::span<const double> internal) const {
   if (pattern_.cells.empty() || !pattern_.cells[cell.index()]) return std::nullopt;
-  return activity(cell, pattern_.delays_s[cell.index()], time_s, internal);
+  return activity(cell, pattern_.delays_s[cell.index()], time_s, internal, followed_.at(followed(internal), cell));
 }
 
 std::vector<double> Contraction::delays_s() const {
@@ -166,8 +168,11 @@ struct Contraction::Pulled {
   }
 };
 
-Contraction::Contraction(std::vector<Spring> springs, Program program, CellPattern pattern)
-    : springs_(std::move(springs)), program_(std::move(program)), pattern_(std::move(pattern)) {
+Contraction::Contraction(std::vector<Spring> springs, Program program, CellPattern pattern, FollowedSignal followed)
+    : springs_(std::move(springs)),
+      program_(std::move(program)),
+      pattern_(std::move(pattern)),
+      followed_(std::move(followed)) {
   for (const Spring& spring : springs_) {
     groups_.add(spring.nodes);
     longest_ = std::max(longest_, spring.nodes.size());
@@ -208,7 +213,9 @@ EnergyFlow Contraction::energy_flow(const CompletedStep& completed) const {
       const double stretch = std::max(0.0, length - spring.rest_length);
       return 0.5 * spring.stiffness * stretch * stretch + spring.preload * length;
     };
-    flow.active -= activity(spring, step) * (potential(after) - potential(before));
+    const double following = followed_.mean(followed(step.internal), spring.cell),
+                 acting = activity(spring.cell, spring.delay_s, step.end_time_s, step.internal, following);
+    flow.active -= acting * (potential(after) - potential(before));
     flow.dissipated += spring.damping / step.rate_s * (after - before) * (after - before);
   }
   return flow;
@@ -287,12 +294,41 @@ void Contraction::add_strength_gradient(const Step& step, std::span<const Vec3> 
 }
 
 std::unique_ptr<Law> Contraction::with_strengths(std::span<const double> factors) const {
-  std::vector<Spring> springs = springs_;
-  for (Spring& spring : springs)
+  auto law = std::make_unique<Contraction>(*this);
+  for (Spring& spring : law->springs_)
     for (double* strength : {&spring.stiffness, &spring.preload}) *strength *= factors[spring.cell.index()];
-  CellPattern pattern = pattern_;
-  for (std::size_t c = 0; c < pattern.strengths.size(); ++c) pattern.strengths[c] *= factors[c];
-  return std::make_unique<Contraction>(std::move(springs), program_, std::move(pattern));
+  for (std::size_t c = 0; c < law->pattern_.strengths.size(); ++c) law->pattern_.strengths[c] *= factors[c];
+  return law;
+}
+
+const LawDerivatives& Contraction::derivatives() const {
+  if (followed_.is_used()) refuse_gradient("a contraction that follows a signal has no gradient; remove follow");
+  return *this;
+}
+
+std::vector<double> Contraction::first_internal(const Tissue& /*tissue*/) const {
+  return std::vector<double>(followed_.size(), 0);
+}
+
+std::vector<double> Contraction::next_internal(const Step& step) const {
+  std::vector<double> internal(step.internal.begin(), step.internal.end());
+  followed_.move_on(followed(std::span(internal)));
+  return internal;
+}
+
+std::vector<double> Contraction::internal_after_change(std::span<const double> internal, const Tissue& /*tissue*/,
+                                                       const TissueChange& change, const ChangePositions&) const {
+  std::vector<double> after = followed_.after_change(followed(internal), change);
+  const std::vector<double> activities = given(internal).after_change(change);
+  after.insert(after.end(), activities.begin(), activities.end());
+  return after;
+}
+
+std::vector<double> Contraction::with_signals(std::span<const double> internal, std::span<const CellArray> signals,
+                                              double time_s) const {
+  std::vector<double> result(internal.begin(), internal.end());
+  followed_.follow(signals, time_s, followed(std::span(result)));
+  return result;
 }
 
 namespace {
@@ -358,7 +394,8 @@ std::unique_ptr<Law> Contraction::after_change(const Tissue& tissue, const Tissu
     for (Spring& part : inherit(spring, daughter->first, daughter->second, tissue, positions))
       springs.push_back(std::move(part));
   }
-  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_change(change));
+  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_change(change),
+                                       followed_.on(tissue));
 }
 
 std::unique_ptr<Law> Contraction::restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
@@ -370,7 +407,8 @@ std::unique_ptr<Law> Contraction::restored(const Tissue& tissue, const TissueCha
     if (spring.nodes.size() < 2 || !std::ranges::all_of(spring.nodes, is_node) ||
         !spring.cell.is_among(tissue.cells.size()))
       throw InvalidNumbers();
-  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_change(change));
+  return std::make_unique<Contraction>(std::move(springs), program_, pattern_.after_change(change),
+                                       followed_.on(tissue));
 }
 
 }  // namespace plica

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mechanics/active/cell_pattern.hpp"
+#include "mechanics/active/followed_signal.hpp"
 #include "mechanics/active/program.hpp"
 #include "mechanics/derivatives.hpp"
 #include "mechanics/law.hpp"
@@ -53,8 +54,8 @@ std::vector<Spring> contraction_springs(const Tissue& tissue, const CellPattern&
 class Contraction final : public Law, public LawDerivatives {
  public:
   /// Take ownership of the springs. `pattern` serves pulses, ablations and activity_of; springs carry their own
-  /// delays.
-  Contraction(std::vector<Spring> springs, Program program, CellPattern pattern = {});
+  /// delays. `followed`: signal that scales activities.
+  Contraction(std::vector<Spring> springs, Program program, CellPattern pattern = {}, FollowedSignal followed = {});
 
   [[nodiscard]] std::string_view name() const override { return "contraction"; }
   [[nodiscard]] std::unique_ptr<Law> clone() const override { return std::make_unique<Contraction>(*this); }
@@ -64,7 +65,8 @@ class Contraction final : public Law, public LawDerivatives {
   void add_tangent_product(const Step& step, std::span<const Vec3> direction, std::span<Vec3> product) const override;
   void add_tangent(const Step& step, TangentSink& tangent) const override;
   [[nodiscard]] NodeGroups node_groups(std::span<const double> /*internal*/) const override { return groups_; }
-  [[nodiscard]] const LawDerivatives& derivatives() const override { return *this; }
+  /// NoGradient where cells follow a signal.
+  [[nodiscard]] const LawDerivatives& derivatives() const override;
   void add_force_gradient(const Step& step, std::span<const Vec3> adjoint,
                           const BeginningGradient& gradient) const override;
   void add_strength_gradient(const Step& step, std::span<const Vec3> adjoint,
@@ -79,11 +81,15 @@ class Contraction final : public Law, public LawDerivatives {
   [[nodiscard]] std::vector<double> past() const override { return as_numbers(springs_); }
   [[nodiscard]] std::unique_ptr<Law> restored(const Tissue& tissue, const TissueChange& change, std::span<const Vec3>,
                                               std::span<const double> past) const override;
-  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& /*tissue*/,
+
+  /// Return what FollowedSignal has; then overridden activities, if any.
+  [[nodiscard]] std::vector<double> first_internal(const Tissue& tissue) const override;
+  [[nodiscard]] std::vector<double> next_internal(const Step& step) const override;
+  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& tissue,
                                                           const TissueChange& change,
-                                                          const ChangePositions&) const override {
-    return GivenActivities(internal).after_change(change);
-  }
+                                                          const ChangePositions&) const override;
+  [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
+                                                 double time_s) const override;
 
   [[nodiscard]] const Program& program() const { return program_; }
   /// Return the time at which the last spring reaches the end of the program, s.
@@ -91,9 +97,9 @@ class Contraction final : public Law, public LawDerivatives {
   [[nodiscard]] bool is_active() const override { return true; }
   [[nodiscard]] std::optional<double> activity_of(CellId cell, double time_s,
                                                   std::span<const double> internal) const override;
-  [[nodiscard]] std::vector<double> with_activities(std::span<const double> /*internal*/,
+  [[nodiscard]] std::vector<double> with_activities(std::span<const double> internal,
                                                     std::span<const double> activities) const override {
-    return {activities.begin(), activities.end()};
+    return given(internal).put(internal, activities);
   }
   [[nodiscard]] std::vector<double> program_points_s() const override {
     return pattern_.with_ablation_points(program_.delayed_points_s(delays_s()));
@@ -106,9 +112,19 @@ class Contraction final : public Law, public LawDerivatives {
 
  private:
   struct Pulled;  // spring at given positions
-  // Activity of a delayed spring of this cell, by program or override, including pulses and ablations.
-  [[nodiscard]] double activity(CellId cell, double delay_s, double time_s, std::span<const double> internal) const;
+  // Activity of a delayed spring of this cell, by program or override, including pulses and ablations. `following`: by
+  // its signal.
+  [[nodiscard]] double activity(CellId cell, double delay_s, double time_s, std::span<const double> internal,
+                                double following) const;
   [[nodiscard]] double activity(const Spring& spring, const Step& step) const;
+  // Return the parts of an internal state.
+  template <class Number>
+  [[nodiscard]] std::span<Number> followed(std::span<Number> internal) const {
+    return internal.first(followed_.size());
+  }
+  [[nodiscard]] GivenActivities given(std::span<const double> internal) const {
+    return GivenActivities(internal.subspan(std::min(internal.size(), followed_.size())));
+  }
   template <class Take>
   void for_springs(const Step& step, const Take& take) const;
   [[nodiscard]] std::vector<double> delays_s() const;
@@ -118,6 +134,7 @@ class Contraction final : public Law, public LawDerivatives {
   std::size_t longest_ = 0;  // nodes of the longest chain
   Program program_;
   CellPattern pattern_;
+  FollowedSignal followed_;
 };
 
 }  // namespace plica

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mechanics/active/shape_activation.hpp"
+#include "mechanics/law.hpp"
 #include "tissue/tissue_change.hpp"
 
 namespace plica {
@@ -13,8 +14,11 @@ namespace plica {
 /// empty if they follow no signal.
 class FollowedSignal {
  public:
+  FollowedSignal() = default;
   FollowedSignal(const Tissue& tissue, const ShapeActivationRule& rule)
       : activation_(tissue, rule), cells_(tissue.cells.size()) {}
+  /// Return the same for another tissue.
+  [[nodiscard]] FollowedSignal on(const Tissue& tissue) const { return {tissue, activation_.rule()}; }
 
   [[nodiscard]] bool is_used() const { return activation_.is_used(); }
   /// Length of the part.
@@ -25,6 +29,10 @@ class FollowedSignal {
   }
   [[nodiscard]] double before(std::span<const double> part, CellId cell) const {
     return is_used() ? part[cells_ + cell.index()] : 1;
+  }
+  /// Return the mean of both, whose forces do the work of a step.
+  [[nodiscard]] double mean(std::span<const double> part, CellId cell) const {
+    return 0.5 * (before(part, cell) + at(part, cell));
   }
 
   /// Move on by a step, before the signals are known at its end.
@@ -47,7 +55,36 @@ class FollowedSignal {
 
  private:
   ShapeActivation activation_;
-  std::size_t cells_;
+  std::size_t cells_ = 0;
+};
+
+/// Law that remembers nothing else.
+class SignalLaw : public Law {
+ public:
+  [[nodiscard]] std::vector<double> first_internal(const Tissue& /*tissue*/) const override {
+    return std::vector<double>(followed_.size(), 0);
+  }
+  [[nodiscard]] std::vector<double> next_internal(const Step& step) const override {
+    std::vector<double> internal(step.internal.begin(), step.internal.end());
+    followed_.move_on(internal);
+    return internal;
+  }
+  [[nodiscard]] std::vector<double> internal_after_change(std::span<const double> internal, const Tissue& /*tissue*/,
+                                                          const TissueChange& change,
+                                                          const ChangePositions& /*positions*/) const override {
+    return followed_.after_change(internal, change);
+  }
+  [[nodiscard]] std::vector<double> with_signals(std::span<const double> internal, std::span<const CellArray> signals,
+                                                 double time_s) const override {
+    std::vector<double> result(internal.begin(), internal.end());
+    followed_.follow(signals, time_s, result);
+    return result;
+  }
+
+ protected:
+  explicit SignalLaw(FollowedSignal followed) : followed_(std::move(followed)) {}
+
+  FollowedSignal followed_;
 };
 
 }  // namespace plica

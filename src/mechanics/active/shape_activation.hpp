@@ -49,8 +49,10 @@ class ShapeActivation {
  public:
   static constexpr double not_yet = -1;
 
+  ShapeActivation() = default;
   ShapeActivation(const Tissue& tissue, const ShapeActivationRule& rule);
 
+  [[nodiscard]] const ShapeActivationRule& rule() const { return rule_; }
   [[nodiscard]] bool is_used() const { return rule_.kind != ShapeActivationRule::Kind::none; }
   /// Use the rule at_crossing.
   void start_at_crossing() { rule_.at_crossing = true; }

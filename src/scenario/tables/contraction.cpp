@@ -11,7 +11,7 @@ namespace of_contraction {
 using C = ContractionInput;
 
 // A cable is a line: keys of faces do not apply.
-void check_border(const std::string& table, C& contraction, const Scenario& /*scenario*/, Input& input) {
+void check_border(const std::string& table, const C& contraction, Input& input) {
   if (contraction.border.empty() || !input.sound(table + ".border")) return;
   const auto refuse = [&](const char* key, bool is_set, const std::string& remedy) {
     if (is_set && input.sound(table + key))
@@ -20,6 +20,19 @@ void check_border(const std::string& table, C& contraction, const Scenario& /*sc
   refuse(".edges", contraction.faces == "lateral", "set edges to \"apical\" or \"basal\"");
   refuse(".diagonals", contraction.diagonals, "remove one of them");
   refuse(".tension_mN_per_m", contraction.tension_mN_per_m > 0, "set the tension of the cable as preload_nN");
+}
+
+void check_contraction(const std::string& table, C& contraction, const Scenario& scenario, Input& input) {
+  check_border(table, contraction, input);
+  if (!check_follow(table, contraction.follow, scenario, input)) return;
+  bool acts = false;
+  for (const auto& [key, value] : {std::pair(".stiffness_nN_per_um", contraction.stiffness_nN_per_um),
+                                   {".preload_nN", contraction.preload_nN},
+                                   {".tension_mN_per_m", contraction.tension_mN_per_m}})
+    acts = acts || value != 0 || !input.sound(table + key) || input.place(table + key) != nullptr;
+  if (!acts)
+    input.report(table + ".follow", "is not used without stiffness, pre-tension or tension",
+                 "remove it, or set stiffness_nN_per_um, preload_nN or tension_mN_per_m");
 }
 
 OtherSide other_side(const C& contraction, const Tissue& tissue) {
@@ -75,7 +88,8 @@ void build(const Scenario& scenario, const Origin& origin, Model& model) {
     CellPattern pattern = make_ablated_pattern(scenario, table, input, origin);
     std::vector<Spring> springs = contraction_springs(model.tissue, pattern, rule);
     model.laws.push_back(
-        std::make_unique<Contraction>(std::move(springs), make_program(input.program), std::move(pattern)));
+        std::make_unique<Contraction>(std::move(springs), make_program(input.program), std::move(pattern),
+                                      FollowedSignal(model.tissue, make_follow(input.follow, scenario))));
     model.laws.back()->set_label(table);
   }
 }
@@ -85,10 +99,11 @@ void describe(const C& input, const Scenario& scenario, Acting& acting) {
   // Lateral edges are long and pull on the small area of a cell.
   const double shape = input.faces == "lateral" ? 0.01 : 1;
   acting.faces_key = "edges";
-  acting.can_be_ablated = acting.contracts = acting.has_sudden_onset = true;
+  acting.can_be_ablated = acting.contracts = true;
+  acting.has_sudden_onset = !input.follow.is_used();
   // A tension that falls with the length on which it acts ends softly by itself; a cable runs along the border.
   acting.is_constant = input.faces != "lateral" && input.stiffness_nN_per_um == 0 && input.border.empty() &&
-                       (input.tension_mN_per_m > 0 || input.preload_nN > 0);
+                       (input.tension_mN_per_m > 0 || input.preload_nN > 0) && !input.follow.is_used();
   acting.forces = {{"stiffness_nN_per_um", input.stiffness_nN_per_um, shape * stress * height},
                    {"preload_nN", input.preload_nN, 0.01 * stress * height * height},
                    {"tension_mN_per_m", input.tension_mN_per_m, stress * height}};
@@ -117,10 +132,11 @@ ScenarioTable contraction_table() {
       row("damping_nN_s_per_um", &C::damping_nN_s_per_um, not_negative, "Spring damping (nN s/µm)."),
   };
   add_program(info.rows, row, &C::program);
+  add_follow(info.rows, row);
   add_pattern(info.rows, acting(row));
   info.check = check_edges;
   info.build = build;
-  list_acting(info, &Scenario::contractions, describe, check_border);
+  list_acting(info, &Scenario::contractions, describe, check_contraction);
   info.regions = [own = info.regions](const Scenario& scenario, const TakeRegion& take) {
     own(scenario, take);
     for (const auto& [name, it] : scenario.contractions) take("contraction." + name + ".border", it.border);

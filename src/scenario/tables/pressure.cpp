@@ -9,16 +9,21 @@ using P = PressureInput;
 
 void build(const Scenario& scenario, const Origin& origin, Model& model) {
   for (const auto& [name, input] : scenario.pressures) {
-    model.laws.push_back(std::make_unique<FacePressure>(model.tissue, meaning_of(words::surfaces, input.faces),
-                                                        make_pattern(input, origin), input.pressure_Pa * units::pascal,
-                                                        make_program(input.program)));
+    model.laws.push_back(std::make_unique<FacePressure>(
+        model.tissue, meaning_of(words::surfaces, input.faces), make_pattern(input, origin),
+        input.pressure_Pa * units::pascal, make_program(input.program),
+        FollowedSignal(model.tissue, make_follow(input.follow, scenario))));
     model.laws.back()->set_label("pressure." + name);
   }
 }
 
+void check(const std::string& table, P& input, const Scenario& scenario, Input& errors) {
+  check_follow(table, input.follow, scenario, errors);
+}
+
 void describe(const P& input, const Scenario& scenario, Acting& acting) {
   acting.faces_key = "face";
-  acting.has_sudden_onset = true;
+  acting.has_sudden_onset = !input.follow.is_used();
   acting.forces = {{"pressure_Pa", input.pressure_Pa, scenario.elasticity.young_modulus_Pa}};
 }
 
@@ -35,9 +40,10 @@ ScenarioTable pressure_table() {
           {.required = true}),
   };
   add_program(info.rows, row, &P::program);
+  add_follow(info.rows, row);
   add_strengths(info.rows, acting(row));
   info.build = build;
-  list_acting(info, &Scenario::pressures, describe);
+  list_acting(info, &Scenario::pressures, describe, check);
   return info;
 }
 
