@@ -171,13 +171,16 @@ std::vector<const KeyRow*> own_rows(const ScenarioTable& info) {
 
 bool is_inside(const KeyRow& row, std::string_view key) { return row.key.starts_with(std::string(key) + '.'); }
 
-/// Returns the rows of one key of inner tables, from the first table that has it.
+/// Returns the rows of one key of inner tables, from the first table that has most of them.
 std::vector<const KeyRow*> rows_of_key(std::string_view key) {
-  std::vector<const KeyRow*> rows;
-  for (const ScenarioTable& info : scenario_tables())
+  std::vector<const KeyRow*> most;
+  for (const ScenarioTable& info : scenario_tables()) {
+    std::vector<const KeyRow*> rows;
     for (const KeyRow& row : info.rows)
-      if (is_inside(row, key) && (rows.empty() || rows.front()->table == row.table)) rows.push_back(&row);
-  return rows;
+      if (is_inside(row, key)) rows.push_back(&row);
+    if (rows.size() > most.size()) most = std::move(rows);
+  }
+  return most;
 }
 
 /// Returns the rows of inner tables; two that differ in name only (program, stiffness_program) are listed once.
