@@ -252,7 +252,7 @@ TEST(Words, EachThatIsAllowedHasAMeaningOfItsOwn) {
   expect_words("cortex.*", "trigger.measure", words::cell_measures);
   expect_words("cortex.*", "follow.measure", words::cell_measures);
   expect_words("cortex.*", "trigger.of", words::read_cells);
-  for (const char* table : {"cortex.*", "growth.*", "foundation.*", "matrix.*"})
+  for (const char* table : {"contraction.*", "cortex.*", "pressure.*", "growth.*", "foundation.*", "matrix.*"})
     expect_words(table, "follow.of", words::read_cells);
   expect_words("cortex.*", "direction.axis", words::fibre_axes);
   expect_words("enclosed.*", "volume", words::enclosed_states);
