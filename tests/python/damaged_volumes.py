@@ -31,7 +31,7 @@ def holes(volume, random):
     volume = volume.copy()
     places = np.argwhere(volume > 0)
     for place in places[random.integers(len(places), size=random.integers(1, 8))]:
-        box = tuple(slice(max(one - 3, 0), one + 4) for one in place)
+        box = tuple(slice(max(one - 3, 0), min(one + 4, size)) for one, size in zip(place, volume.shape))
         far = sum((part - one)**2 for part, one in zip(np.mgrid[box], place))
         volume[box][far <= random.integers(1, 9)] = 0
     return volume
