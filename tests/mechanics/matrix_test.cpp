@@ -198,8 +198,8 @@ std::vector<std::vector<double>> metrics_by_cell(const Model& model, const State
   return result;
 }
 
-// Walls turn and a cell leaves in a flat sheet: the layer stays as it was, so its energy does; to the bit in cells
-// that keep their faces.
+// Walls turn and a cell leaves in a flat sheet: neither the layer nor its energy changes, bitwise in cells that keep
+// their faces.
 TEST(Matrix, ExchangesAndAnExtrusionLeaveIt) {
   for (const double relaxation_s : {0.0, 20.0}) {
     Model model(tissue_from_prisms(honeycomb(7, 7, 3.5, 10), PolygonSplit::diagonals, 1));
