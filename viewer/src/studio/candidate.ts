@@ -30,7 +30,7 @@ export class CandidatePanel {
     const isRead = candidate.cells > 0;
     this.title.textContent = isRead ? `${candidate.file}: ${candidate.cells} cells, not used yet`
       : candidate.problem === "" ? `${candidate.file} is being read…` : `${candidate.file} cannot be used so far`;
-    this.use.disabled = !isRead;
+    this.use.disabled = candidate.problem !== ""; // the server waits for a reading that is under way
     this.fault.textContent = candidate.problem;
     const remarks = candidate.remarks.map((line) => element("li", {}, line));
     this.remarks.replaceChildren(...(isRead && remarks.length === 0 ? [element("li", {}, "No remarks.")] : remarks));
