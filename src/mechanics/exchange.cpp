@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <numeric>
 
@@ -63,7 +65,8 @@ double opening_force(const Model& model, const WallTurn& turn, const Vectors& po
   return sum;
 }
 
-// Both columns of a wall take their mean velocity, without acceleration; pressures are taken as constant.
+// Both columns of a wall take their mean velocity, without acceleration; pressures of remeshed cells are taken as
+// constant.
 void follow_trend(const Model& model, const TissueChange& change, std::span<const WallTurn> turns, State& state) {
   State::Trend& trend = state.trend;
   for (const WallTurn& turn : turns) {
@@ -77,9 +80,10 @@ void follow_trend(const Model& model, const TissueChange& change, std::span<cons
       for (const NodeId node : {begin[level], end[level]})
         if (!trend.accelerations.empty()) trend.accelerations[node.index()].setZero();
     }
-    for (const CellId cell : turn.cells())
-      if (cell.valid() && !trend.multiplier_rates.empty()) trend.multiplier_rates[cell.index()] = 0;
   }
+  if (!trend.multiplier_rates.empty())
+    for (std::size_t c = 0; c < change.remeshed.size(); ++c)
+      if (change.remeshed[c]) trend.multiplier_rates[c] = 0;
   for (Vectors* vectors : {&state.velocities, &trend.mean_velocities, &trend.accelerations})
     if (!vectors->empty()) *vectors = with_new_nodes(model.tissue, change, *vectors);
 }
@@ -155,19 +159,26 @@ void continue_growth(const TissueChange& change, const std::map<CellId, Mat3>& a
   }
 }
 
-TissueChange turn(Model& model, State& state, std::vector<WallTurn>& turns, double length_um) {
-  std::vector<Mat3> inverse(model.tissue.cells.size(), Mat3::Identity());
-  for (const WallTurn& one : turns)
-    for (const CellId cell : one.cells())
-      if (cell.valid()) inverse[cell.index()] = unstretch(model, state, cell);
+// Mesh cells again by `make`, which leaves the walls that turn.
+TissueChange remesh(Model& model, State& state, std::span<const CellId> cells, const std::vector<WallTurn>& turns,
+                    const std::function<TissueChange(const Unstretch&)>& make) {
+  std::map<CellId, Mat3> inverse;
+  for (const CellId cell : cells) inverse[cell] = unstretch(model, state, cell);
   const std::map<CellId, Mat3> ahead = growth_ahead(model, state);
   const Vectors before = state.positions;
-  TissueChange change =
-      turn_walls(model.tissue, turns, length_um, state.positions, [&](CellId cell) { return inverse[cell.index()]; });
+  TissueChange change = make([&](CellId cell) { return inverse.at(cell); });
   continue_growth(change, ahead, state.time_s, model);
   follow_trend(model, change, turns, state);
   follow_change(model, state, change, before);
   return change;
+}
+
+TissueChange turn(Model& model, State& state, std::vector<WallTurn>& turns, double length_um) {
+  std::vector<CellId> cells;
+  for (const WallTurn& one : turns) std::ranges::copy_if(one.cells(), std::back_inserter(cells), &CellId::valid);
+  return remesh(model, state, cells, turns, [&](const Unstretch& unstretched) {
+    return turn_walls(model.tissue, turns, length_um, state.positions, unstretched);
+  });
 }
 
 enum class Turning { by_forces, always };
@@ -245,6 +256,25 @@ std::optional<ExchangeOutcome> exchange_neighbours(Model& model, State& state, s
 std::optional<ExchangeOutcome> part_neighbours(Model& model, State& state, std::vector<WallTurn> turns,
                                                double length_um) {
   return change_neighbours(model, state, std::move(turns), length_um, Turning::always);
+}
+
+std::vector<CellId> cells_to_split(const Model& model, const State& state, const CellSet& among) {
+  std::vector<CellId> cells = badly_split(model.tissue, state.positions);
+  std::erase_if(cells, [&](CellId cell) { return !among[cell.index()]; });
+  if (cells.empty()) return cells;
+  const std::optional<Model> now = grown(model, model, state.internals, state.time_s);
+  const auto of_now = [&](CellId cell) { return unstretch(now ? *now : model, state, cell); };
+  std::erase_if(cells, [&](CellId cell) { return !gains_by_split(model.tissue, cell, state.positions, of_now); });
+  return cells;
+}
+
+SplitOutcome split_cells(Model& model, State& state, std::vector<CellId> cells) {
+  settle_growth(model, state);
+  const double before = energy_of(model, state);
+  TissueChange change = remesh(model, state, cells, {}, [&](const Unstretch& unstretched) {
+    return split_again(model.tissue, cells, state.positions, unstretched);
+  });
+  return {std::move(change), std::move(cells), energy_of(model, state) - before};
 }
 
 std::optional<ExtrusionOutcome> extrude_cells(Model& model, State& state, std::vector<CellId> cells) {

@@ -1,4 +1,5 @@
-// Exchange of neighbours and extrusion between steps: walls turn where forces then lengthen them, cells leave.
+// Exchange of neighbours and extrusion between steps: walls turn where forces then lengthen them, cells leave; cells
+// whose elements have become bad meanwhile are split again.
 // Topology: tissue/exchange.hpp, tissue/extrusion.hpp. Theory: docs/theory/exchange.md.
 #pragma once
 
@@ -39,5 +40,17 @@ struct ExtrusionOutcome {
 /// Take out those of the cells, which can leave and share no neighbour, whose neighbours get good elements; empty:
 /// none. The neighbours fill the place in the next step; their rest shapes are as after an exchange.
 std::optional<ExtrusionOutcome> extrude_cells(Model& model, State& state, std::vector<CellId> cells);
+
+struct SplitOutcome {
+  TissueChange change;
+  std::vector<CellId> cells;
+  double energy = 0;  // nN um: its change
+};
+
+/// Return the cells of a set that have a bad element, which becomes better if they are split again.
+std::vector<CellId> cells_to_split(const Model& model, const State& state, const CellSet& among);
+
+/// Split cells again. Shapes, volumes and velocities stay; rest shapes are as after an exchange.
+SplitOutcome split_cells(Model& model, State& state, std::vector<CellId> cells);
 
 }  // namespace plica

@@ -48,16 +48,18 @@ CellSet dwindled_cells(const Model& model, const State& state, std::span<const E
   return all;
 }
 
+bool is_of(const WallTurn& turn, const Sheet& sheet, const Exchanges::Turned& one) {
+  const NodeId begin = column(sheet, turn.begin).front(), end = column(sheet, turn.end).front();
+  return (one.begin == begin && one.end == end) || (one.begin == end && one.end == begin);
+}
+
 // Walls below a length, um, that may turn by topology, cells and earlier turns, with their lengths; the shortest first.
 std::vector<std::pair<double, WallTurn>> free_turns(const Model& model, const State& state, const ExchangeRule& rule,
                                                     double below_um) {
   const Tissue& tissue = model.tissue;
   const CellSet& may = tissue.regions.at(rule.region);
   const auto is_recent = [&](const WallTurn& turn) {
-    const NodeId begin = column(tissue.sheet, turn.begin).front(), end = column(tissue.sheet, turn.end).front();
-    return std::ranges::any_of(state.exchanges.recent, [&](const Exchanges::Turned& one) {
-      return (one.begin == begin && one.end == end) || (one.begin == end && one.end == begin);
-    });
+    return std::ranges::any_of(state.exchanges.recent, [&](const auto& one) { return is_of(turn, tissue.sheet, one); });
   };
   std::vector<std::pair<double, WallTurn>> found;
   for (const WallTurn& turn : possible_turns(tissue.sheet)) {
@@ -70,6 +72,15 @@ std::vector<std::pair<double, WallTurn>> free_turns(const Model& model, const St
   }
   std::ranges::stable_sort(found, {}, &std::pair<double, WallTurn>::first);
   return found;
+}
+
+// Take the cells of a turn, unless one is taken.
+bool take(const WallTurn& turn, CellSet& taken) {
+  const std::array cells = turn.cells();
+  if (std::ranges::any_of(cells, [&](CellId cell) { return cell.valid() && taken[cell.index()]; })) return false;
+  for (const CellId cell : cells)
+    if (cell.valid()) taken[cell.index()] = true;
+  return true;
 }
 
 void count(const ExchangeOutcome& outcome, Exchanges& exchanges) {
@@ -108,13 +119,9 @@ std::vector<WallTurn> due_exchanges(const Model& model, const State& state, cons
   std::vector<WallTurn> due;
   CellSet taken(model.tissue.cells.size(), false);
   for (const auto& [length, turn] : free_turns(model, state, rule, rule.below_um)) {
-    const auto is_taken = [&](CellId cell) { return cell.valid() && taken[cell.index()]; };
     const auto gains = [&](CellId cell) { return cell.valid() && dwindled[cell.index()]; };
-    if (gains(turn.behind) || gains(turn.ahead) || !(lengthening(model, state, turn) < 0) ||
-        std::ranges::any_of(turn.cells(), is_taken))
+    if (gains(turn.behind) || gains(turn.ahead) || !(lengthening(model, state, turn) < 0) || !take(turn, taken))
       continue;
-    for (const CellId cell : turn.cells())
-      if (cell.valid()) taken[cell.index()] = true;
     due.push_back(turn);
   }
   return due;
@@ -186,6 +193,33 @@ std::optional<ExtrusionOutcome> make_extrusions(Model& model, State& state, std:
   return outcome;
 }
 
+std::optional<SplitOutcome> make_splits(Model& model, State& state, const ExchangeRule& rule) {
+  std::vector<CellId> due = cells_to_split(model, state, model.tissue.regions.at(rule.region));
+  if (due.empty()) return std::nullopt;
+  SplitOutcome outcome = split_cells(model, state, std::move(due));
+  state.exchanges.energy += outcome.energy;
+  return outcome;
+}
+
+std::optional<ExchangeOutcome> undo_exchanges(Model& model, State& state, const ExchangeRule& rule) {
+  const Sheet& sheet = model.tissue.sheet;
+  std::vector<WallTurn> turns;
+  CellSet taken(model.tissue.cells.size(), false);
+  for (const WallTurn& turn : possible_turns(sheet)) {
+    const bool has_turned = std::ranges::any_of(state.exchanges.recent, [&](const Exchanges::Turned& one) {
+      return one.time_s == state.time_s && is_of(turn, sheet, one);
+    });
+    // Walls that were judged only are still short.
+    const bool is_made = has_turned && wall_length(model.tissue, turn, state.positions) > rule.below_um;
+    if (is_made && take(turn, taken)) turns.push_back(turn);
+  }
+  std::optional<ExchangeOutcome> outcome = part_neighbours(model, state, std::move(turns), rule.new_length_um);
+  if (!outcome) return std::nullopt;
+  state.exchanges.count -= static_cast<int>(outcome->turns.size());
+  state.exchanges.energy += outcome->energy;
+  return outcome;
+}
+
 RepeatedChange repeated_exchange(const ExchangeOutcome& outcome, const ExchangeRule& rule) {
   return [turns = outcome.turns, length_um = rule.new_length_um](Model& model, State& state) {
     const auto again = part_neighbours(model, state, turns, length_um);
@@ -204,6 +238,13 @@ RepeatedChange repeated_extrusion(const ExtrusionOutcome& outcome) {
   return [cells = outcome.cells](Model& model, State& state) {
     const auto again = extrude_cells(model, state, cells);
     return again && again->cells.size() == cells.size();
+  };
+}
+
+RepeatedChange repeated_split(const SplitOutcome& outcome) {
+  return [cells = outcome.cells](Model& model, State& state) {
+    split_cells(model, state, cells);
+    return true;
   };
 }
 

@@ -44,9 +44,16 @@ std::optional<ExchangeOutcome> make_parting(Model& model, State& state, const Ex
 /// Take out the cells of these regions that are small and have come down to three walls, and count them; empty: none.
 std::optional<ExtrusionOutcome> make_extrusions(Model& model, State& state, std::span<const ExtrusionRule> rules);
 
+/// Split cells of the exchange rule's region again whose elements have become bad, where that helps; empty: none.
+std::optional<SplitOutcome> make_splits(Model& model, State& state, const ExchangeRule& rule);
+
+/// Turn the walls back that have turned at the time of the state, and count them no more; empty: none.
+std::optional<ExchangeOutcome> undo_exchanges(Model& model, State& state, const ExchangeRule& rule);
+
 /// Return what makes these changes again.
 RepeatedChange repeated_exchange(const ExchangeOutcome& outcome, const ExchangeRule& rule);
 RepeatedChange repeated_parting(const ExchangeOutcome& outcome, const ExchangeRule& rule);
 RepeatedChange repeated_extrusion(const ExtrusionOutcome& outcome);
+RepeatedChange repeated_split(const SplitOutcome& outcome);
 
 }  // namespace plica

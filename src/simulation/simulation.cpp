@@ -282,6 +282,25 @@ void Simulation::exchange() {
     adopt(outcome->change, repeated_extrusion(*outcome));
 }
 
+// Mend cells that leave Newton's method no step: split those with bad elements again, or else undo the exchanges since
+// the last step. False: nothing is left to do.
+bool Simulation::mend_cells(int& attempts) {
+  if (!controls_.exchange) return false;
+  const ExchangeRule& rule = *controls_.exchange;
+  const auto take = [&](const auto& outcome, const auto& repeated) {
+    if (!outcome) return false;
+    adopt(outcome->change, repeated(*outcome));
+    step_length_ = StepLength(controls_);
+    return true;
+  };
+  const auto again = [&](const ExchangeOutcome& outcome) { return repeated_exchange(outcome, rule); };
+  while (attempts < 2)
+    if (attempts++ == 0 ? take(make_splits(*model_, now_.state, rule), repeated_split)
+                        : take(undo_exchanges(*model_, now_.state, rule), again))
+      return true;
+  return false;
+}
+
 // Follow a change of the model and the state.
 void Simulation::adopt(const TissueChange& change, const RepeatedChange& again) {
   now_.equilibrium_time_s.reset();             // it counts only after the last change
@@ -418,7 +437,7 @@ bool Simulation::advance_signals(const Model& model, State& next) {
 // Advance the state by one step; `before` receives the old state. Empty, with the state unchanged, on failure or stop.
 std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
   State& next = before;
-  int refused = 0, wasted_iterations = 0, wasted_solves = 0;
+  int refused = 0, wasted_iterations = 0, wasted_solves = 0, mendings = 0;
   while (true) {
     const double end_s = step_length_.propose_end_s(controls_, now_.state.time_s, until_s);
     const double duration_s = end_s - now_.state.time_s;
@@ -447,7 +466,7 @@ std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
     wasted_solves += report.linear_solves;
     if (solved) continue;
     stepper_->forget_factor();
-    if (step_length_.halve(controls_, duration_s)) continue;
+    if (step_length_.halve(controls_, duration_s) || mend_cells(mendings)) continue;
     if (report.cell) failed_cell_ = id_of(*model_, *report.cell);
     failure_ = failure_text(report, model, now_.state, duration_s, scenario_.get());
     return std::nullopt;

@@ -147,6 +147,7 @@ class Simulation {
   bool advance_signals(const Model& model, State& next);
   void divide(const std::vector<PlannedDivision>& due);
   void exchange();
+  bool mend_cells(int& attempts);
   void adopt(const TissueChange& change, const RepeatedChange& again);
   void restart_at_a_jump();
   EnergyFlow account_for_energy(const State& before);

@@ -183,8 +183,7 @@ TissueChange turn_walls(Tissue& tissue, std::vector<WallTurn>& turns, double len
                         const Unstretch& unstretch) {
   TissueChange change = no_change(tissue);
   change.remeshed.assign(tissue.cells.size(), false);
-  std::vector<double> volumes;
-  for (const Cell& cell : tissue.cells) volumes.push_back(rest_volume(tissue, cell));
+  const std::vector<double> volumes = rest_volumes(tissue);
   Turner turner(tissue, positions, length_um, unstretch);
   std::erase_if(turns, [&](const WallTurn& turn) { return !turner.turn(turn); });
   for (const WallTurn& turn : turns) {

@@ -83,8 +83,7 @@ bool can_leave(const Sheet& sheet, CellId cell) {
 }
 
 TissueChange take_out(Tissue& tissue, std::vector<CellId>& cells, Vectors& positions, const Unstretch& unstretch) {
-  std::vector<double> volumes;
-  for (const Cell& cell : tissue.cells) volumes.push_back(rest_volume(tissue, cell));
+  const std::vector<double> volumes = rest_volumes(tissue);
   CellSet is_out(tissue.cells.size(), false), is_beside(tissue.cells.size(), false);
   std::vector<char> is_dropped(tissue.node_count(), 0);
   Remover remover(tissue, positions, unstretch);

@@ -1,4 +1,4 @@
-// Cells whose rings change, by exchange or extrusion: their splits, rest shapes and meshes.
+// Cells that are meshed again, since their rings change or their elements are bad: splits, rest shapes, meshes.
 #pragma once
 
 #include <functional>
@@ -47,9 +47,21 @@ class Remesher {
   std::vector<std::pair<NodeId, Vec3>> places_;
 };
 
+/// Return the rest volumes of cells, um^3.
+std::vector<double> rest_volumes(const Tissue& tissue);
+
 /// Mesh a tissue some of whose cells are remeshed (TissueChange::remeshed). Their rest shapes are the present ones,
 /// mapped, with rest volumes as `volumes` (former cells) has them. Rest shapes of other cells stay.
 void complete_remeshed(Tissue& tissue, const TissueChange& change, const Unstretch& unstretch,
                        const std::vector<double>& volumes, Vectors& positions);
+
+/// Return the cells with a bad element.
+std::vector<CellId> badly_split(const Tissue& tissue, std::span<const Vec3> positions);
+
+/// Whether the worst element of a cell would become at least twice as good if it was split again.
+bool gains_by_split(const Tissue& tissue, CellId cell, std::span<const Vec3> positions, const Unstretch& unstretch);
+
+/// Split cells again, in the best way. Their stops become corners; rest shapes are as in turn_walls, positions stay.
+TissueChange split_again(Tissue& tissue, std::span<const CellId> cells, Vectors& positions, const Unstretch& unstretch);
 
 }  // namespace plica
