@@ -13,14 +13,15 @@ BACKGROUND = 15      # times the volume of a usual cell: larger labels are lumen
 
 
 class Labels(NamedTuple):
-    """Numbers of cells by voxel, with a margin of one voxel: 0 is background, `cells` + 1 beyond the image.
+    """Numbers of cells by voxel, with a margin of one voxel or more that has no cells: 0 is background, `cells` + 1 beyond the image.
 
-    `names` has the label of each number from 1; `origin` the voxel of the volume at the first one, z, y, x.
+    `names` has the label of each number from 1; `origin` the voxel of the volume at the first one, z, y, x; `shape` that of the volume.
     """
 
     numbers: NDArray[Any]
     names: NDArray[np.int64]
     origin: NDArray[np.int64]
+    shape: NDArray[np.int64]
     remarks: list[str]
 
     @property
@@ -29,7 +30,7 @@ class Labels(NamedTuple):
 
     def where(self, place: NDArray[Any]) -> str:
         """Describe a place in the array, z, y, x."""
-        plane, row, column = (place + self.origin).tolist()
+        plane, row, column = np.clip(place + self.origin, 0, self.shape - 1).tolist()
         return f"plane {plane}, row {row}, column {column}"
 
     def place_of(self, number: int) -> NDArray[np.int64]:
@@ -62,12 +63,15 @@ def numbered_volume(volume: Any, background: int, keep_cut: bool) -> Labels:
 
 def _with_margin(found: NDArray[Any], low: NDArray[np.int64], shape: NDArray[np.int64], names: NDArray[Any], keep_cut: bool,
                  remarks: list[str]) -> Labels:
-    numbers = np.pad(found, 1)
+    borders = np.column_stack([low == 0, low + found.shape == shape])
+    margin = np.array([[1 + (keep_cut and border and bool(np.take(found, end, axis).any())) for end, border in zip((0, -1), borders[axis])]
+                       for axis in range(3)])  # of two voxels where kept cells meet the border, as elsewhere
+    numbers = np.pad(found, margin)
     for axis in range(3):
-        for end, is_border in ((0, low[axis] == 0), (-1, low[axis] + found.shape[axis] == shape[axis])):
-            if is_border and not keep_cut:
+        for end, border in zip((0, -1), borders[axis]):
+            if border and not keep_cut:
                 numbers[(slice(None),) * axis + (end,)] = len(names) + 1
-    return Labels(numbers, names.astype(np.int64), low - 1, remarks)
+    return Labels(numbers, names.astype(np.int64), low - margin[:, 0], shape, remarks)
 
 
 def _whole_numbers(volume: Any) -> NDArray[Any]:

@@ -156,14 +156,13 @@ def _close_gaps(labels: Labels, gap_px: float, spacing: NDArray[np.float64]) -> 
     numbers = labels.numbers
     radius = np.maximum(1, np.floor(gap_px * spacing.min() / spacing + 0.5)).astype(int)
     beyond = len(labels.names) + 1
-    tissue = (numbers > 0) & (numbers != beyond)
-    closed = _spread(tissue, radius)
-    np.logical_not(closed, out=closed)
-    closed = _spread(closed, radius)
-    np.logical_not(closed, out=closed)
-    closed &= numbers == 0
+    wide = np.pad((numbers > 0) & (numbers != beyond), radius[:, None])  # what is beyond the margin is no gap
+    cells = np.count_nonzero(wide)
+    for _ in range(2):  # dilation, then erosion
+        wide = ~_spread(wide, radius)
+    closed = wide[tuple(slice(one, -one) for one in radius.tolist())] & (numbers == 0)
     gaps = np.flatnonzero(closed)
-    if len(gaps) > TOLD_GAPS * np.count_nonzero(tissue):
+    if len(gaps) > TOLD_GAPS * cells:
         labels.remarks.append(f"gaps between cells were closed: {len(gaps)} voxels, the first at {labels.where(_at(gaps[0], numbers.shape))}")
     _fill(numbers, gaps, beyond, background=False)
     return len(gaps) > 0

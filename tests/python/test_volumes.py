@@ -110,6 +110,37 @@ def test_damage_is_repaired_and_reported(damage, kind, spacing, said):
         assert any(re.search(said, remark) for remark in tissue.remarks), tissue.remarks
 
 
+def places(remarks, margin=0):
+    """Return remarks with their places moved by a margin."""
+    return [re.sub(r"(plane|row|column) (-?\d+)", lambda found: f"{found[1]} {int(found[2]) - margin}", one) for one in remarks]
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("ends", [(True, True), (True, False), (False, True)])
+def test_cut_cells_are_kept_as_in_an_image_with_a_margin(axis, ends):
+    """The border does not join cells at opposite ends of the image, also with gaps between cells."""
+    along = np.moveaxis(drawn("tube")[0], 2, 0)
+    volume = np.moveaxis(along[9 * ends[0]:len(along) - 9 * ends[1]], 0, axis)
+    assert (np.take(volume, 0, axis).any(), np.take(volume, -1, axis).any()) == ends
+    for one, gap_px in ((volume, 1), (damaged_volumes.gaps(volume, None), 1), (volume, 3)):
+        kept, wide = made(one, keep_cut=True, gap_px=gap_px), made(np.pad(one, 2), gap_px=gap_px)
+        assert np.array_equal(kept.cell_data["label"], wide.cell_data["label"])
+        assert np.allclose(kept.apical + 1, wide.apical) and np.allclose(kept.basal + 1, wide.basal)
+        assert kept.quality.neighbours_right > 0.95 and pairs_of(kept) == pairs_of(wide)
+        assert [remark for remark in kept.remarks if "-1" in remark] == []
+        assert kept.remarks == places(wide.remarks, 2)
+        assert gap_px > 1 or one is not volume or not any("gaps" in remark for remark in kept.remarks)
+
+
+def test_wide_gaps_are_closed_in_the_tissue_only():
+    """Labels that begin a voxel from the border are closed as those far from it."""
+    labels = drawn("sheet")[0]
+    box = tuple(slice(max(at.min() - 1, 0), at.max() + 2) for at in np.nonzero(labels))
+    near, far = made(labels[box], gap_px=3), made(np.pad(labels[box], 8), gap_px=3)
+    assert np.allclose(near.apical + 4, far.apical) and pairs_of(near) == pairs_of(far)
+    assert near.remarks == places(far.remarks, 8)
+
+
 def test_large_cells_of_a_tissue_with_cells_of_many_sizes_are_not_suspected():
     """Logarithms of areas of a frog's epithelium (ForSys) vary by 0.4: some cells have twice the usual size."""
     sizes = np.random.default_rng(1).normal(size=100)
