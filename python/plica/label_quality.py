@@ -88,7 +88,7 @@ class LabelledTissue(PrismTissue):
         """Median height and width of cells (root of volume over height), and the extent of the tissue, in words."""
         widths = np.sqrt(self.volumes / np.maximum(self.heights, 1e-12))
         extent = np.ptp(np.concatenate([self.apical, self.basal]), axis=0)
-        return (f"{rounded(np.median(self.heights))} µm high and {rounded(np.median(widths))} µm wide (medians); tissue "
+        return (f"{rounded(float(np.median(self.heights)))} µm high and {rounded(float(np.median(widths)))} µm wide (medians); tissue "
                 f"{' × '.join(map(rounded, extent.tolist()))} µm (x, y, z)")
 
     def __repr__(self) -> str:

@@ -348,3 +348,6 @@ def test_the_program_hands_over(tmp_path):
     assert done.returncode == 0 and "cells.ply: 80 cells" in done.stdout, done.stderr
     refused = subprocess.run(words, env={**os.environ, **path}, capture_output=True, text=True)
     assert refused.returncode == 2 and "--out" in refused.stderr
+    own, whole = (subprocess.run([*one, "labels", "--help"], capture_output=True, text=True).stdout
+                  for one in ([os.environ["PLICA"]], [sys.executable, "-m", "plica"]))
+    assert {*re.findall(r"--[a-z-]+", own)} == {*re.findall(r"--[a-z-]+", whole)}
