@@ -17,6 +17,7 @@ from .experiments import reproduce
 from .fits import Combination, Fit, Miss, fit
 from .indices import SobolIndices
 from .inference import Inference, infer
+from .label_quality import LabelledTissue
 from .label_shapes import LabelledShapes, shapes_of_labels
 from .labels import polygons_of_labels
 from .monolayers import polygons_of_monolayer, tissue_of_monolayer
@@ -49,6 +50,7 @@ __all__ = [
     "GradientCheck",
     "Inference",
     "LabelledShapes",
+    "LabelledTissue",
     "LocalEnergy",
     "Miss",
     "MissingExtra",

@@ -3,6 +3,8 @@ runs them without the program."""
 from __future__ import annotations
 
 import argparse
+import json
+import re
 import sys
 import warnings
 from pathlib import Path
@@ -78,14 +80,22 @@ def _labels(given: argparse.Namespace) -> int:
             tissue = tissue_of_labels(given.file, given.spacing_um, apical=given.apical, background=given.background,
                                       gap_px=given.gap_px, keep_cut=given.keep_cut, keep=given.keep)
         except ValueError as error:
-            raise ValueError(f"{given.file}: {error}") from error
+            raise ValueError(f"{given.file}: {_in_options(str(error))}") from error
     tissue.write(given.out)
     if given.picture:
         tissue.figure(given.file).savefig(given.picture, dpi=150)
     for remark in tissue.remarks:
-        print(f"note: {remark}")
-    print(f"{given.out}: {len(tissue.cells)} cells\n{tissue.quality!r}")
+        print(f"note: {_in_options(remark)}")
+    print(f"{given.out}: {len(tissue.cells)} cells, {tissue.sizes}\n{tissue.quality!r}\n")
+    print(f"In a scenario:\n[embryo]\nshape = \"prisms\"\nfile = {json.dumps(given.out, ensure_ascii=False)}")
     return DONE
+
+
+def _in_options(text: str) -> str:
+    """Return a message of `tissue_of_labels` with options in place of arguments."""
+    text = re.sub(r"spacing_um = \((.*?)\)", lambda found: "--spacing-um " + found[1].replace(",", ""), text)
+    text = text.replace("spacing_um: None", "spacing_um: not in the file").replace("keep_cut = True", "--keep-cut").replace('keep = "largest"', "--keep largest")
+    return re.sub(r"\b(gap_px|spacing_um)\b", lambda found: "--" + found[0].replace("_", "-"), text)
 
 
 if __name__ == "__main__":

@@ -22,11 +22,15 @@ if TYPE_CHECKING:
 
 __all__ = ["LabelQuality", "LabelledTissue"]
 
+GOOD = "good: neighbours over 95 %, corners under 1.5 voxels, volumes under 10 %, scaled Jacobian over 0.2"
 LEAST_WALL = 0.02    # of a usual wall between labels: smaller ones are points
 
 
 class LabelQuality:
     """How well prisms agree with labels (`LabelledTissue.quality`).
+
+    Good are over 95 % of neighbours (scutoids are some of the others), corners within 1.5 voxels and volumes within 10 % (medians), and
+    scaled Jacobians over 0.2, below which ``plica check`` warns.
 
     Attributes
     ----------
@@ -62,7 +66,7 @@ class LabelQuality:
                 f"in cell {label[off]:.0f}\n"
                 f"areas: apical {100 * np.median(np.abs(self.apical_area_error)):.1f} %, basal "
                 f"{100 * np.median(np.abs(self.basal_area_error)):.1f} % off (median)\n"
-                f"scaled Jacobian: {self.scaled_jacobian[flattest]:.2f} at least, in cell {label[flattest]:.0f}")
+                f"scaled Jacobian: {self.scaled_jacobian[flattest]:.2f} at least, in cell {label[flattest]:.0f}\n{GOOD}")
 
 
 class LabelledTissue(PrismTissue):
@@ -78,6 +82,17 @@ class LabelledTissue(PrismTissue):
 
     quality: LabelQuality
     spacing_um: tuple[float, float, float]
+
+    @property
+    def sizes(self) -> str:
+        """Median height and width of cells (root of volume over height), and the extent of the tissue, in words."""
+        widths = np.sqrt(self.volumes / np.maximum(self.heights, 1e-12))
+        extent = np.ptp(np.concatenate([self.apical, self.basal]), axis=0)
+        return (f"{rounded(float(np.median(self.heights)))} µm high and {rounded(float(np.median(widths)))} µm wide (medians); tissue "
+                f"{' × '.join(map(rounded, extent.tolist()))} µm (x, y, z)")
+
+    def __repr__(self) -> str:
+        return f"{super().__repr__()[:-1]}; cells {self.sizes})"
 
     def figure(self, volume: Union[str, os.PathLike[str], ArrayLike]) -> Figure:
         """Draw slices through the middle of the cells, along each axis: labels in colours, cells in outline.
@@ -109,6 +124,11 @@ class LabelledTissue(PrismTissue):
             axes.add_collection(needed("matplotlib.collections", "a figure").LineCollection(lines, colors="k", linewidths=0.6))
             axes.set(title=f"{'zyx'[axis]} = {plane * spacing[axis]:.4g} µm", xlabel=f"{'zyx'[rest[1]]} (µm)", ylabel=f"{'zyx'[rest[0]]} (µm)")
         return figure  # type: ignore[no-any-return]
+
+
+def rounded(value: float) -> str:
+    """Return a number of three digits."""
+    return f"{float(f'{value:.3g}'):g}"
 
 
 def measured_quality(tissue: PrismTissue, layer: Layer, labels: Labels, spacing: Floats, contacts: dict[tuple[int, int], float],

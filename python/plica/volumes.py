@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import number, number_from, voxel_spacing
-from .label_quality import LabelledTissue, measured_quality
+from .label_quality import LabelledTissue, measured_quality, rounded
 from .label_files import read_labels
 from .polygons import check_keep
-from .voxel_labels import Labels, numbered_volume
+from .voxel_labels import Labels, numbered_volume, whole_numbers
 from .voxel_layer import Layer, layer_of
 from .voxel_repair import repaired_labels
 from .voxel_sides import FIRST, SECOND, Floats, Sides, sides_of
@@ -27,6 +27,10 @@ ONE_WAY = 0.3        # mean of normals; less and the layer faces all ways
 LARGE_CELL = 1.7     # times the volume of a usual cell: two cells, which have about 2, may have one label,
 LARGE_SPREADS = 2.5  # if it is also this many standard deviations of logarithms of volumes above it: cells of some tissues differ that much
 NORMAL = 1.4826      # standard deviation of a normal distribution over the median of its absolute values
+LEAST_HEIGHT, MOST_HEIGHT = 1, 300  # µm; cells that are lower or higher are few
+WALL = 0.3           # of the face of a cube as large as a usual cell: smaller contacts are no wall
+FEW_CELLS = 3        # and fewer are no layer
+SAME = 0.01          # relative difference of spacings that are meant to be equal
 OPENING = 1.5        # widths of a cell from the middle of an opening as small as missing cells leave
 DIRECTIONS = {f"{sign}{axis}": (place, 1 if sign == "+" else -1) for place, axis in enumerate("zyx") for sign in "+-"}
 SIDES = "\"outside\" or \"inside\" (of the bend), or a direction: \"+z\", \"-z\", \"+y\", \"-y\", \"+x\", \"-x\""
@@ -106,25 +110,27 @@ def measured_volume(volume: Any, spacing_um: Any, apical: Any, background: int, 
     if isinstance(volume, (str, os.PathLike)):
         volume, found = read_labels(volume)
         spacing_um = found if spacing_um is None else spacing_um
+    whole = whole_numbers(volume)
     spacing = voxel_spacing(spacing_um)
     number(background, "background", "one label")
     gap_px = number_from(gap_px, 0, "gap_px", "a width in voxels, 0 or more")
     check_keep(keep)
     marker = None if apical is None or isinstance(apical, str) else _marker(apical, volume)
-    given = numbered_volume(volume, background, keep_cut)
+    given = numbered_volume(whole, background, keep_cut)
     labels = repaired_labels(given, gap_px, spacing)
     volumes = _volumes(labels, spacing)
     contacts = contact_areas(labels.numbers, labels.cells, spacing)
+    gaps = _gap_text(labels, contacts, gap_px, float(np.median(volumes[1:])))
     sides = sides_of(labels.numbers, labels.cells, spacing, np.array(list(contacts), dtype=np.int64).reshape(-1, 2))
     if not sides.spans.any():
-        raise ValueError("volume: no cell reaches from one free side to the other; give one layer of cells, with background on both sides"
-                         f"{_cut_text(labels)}")
+        raise ValueError("volume: no cell reaches from one free side to the other; give one layer of cells, each with its number, and background on "
+                         f"both sides{gaps or _cut_text(labels)}")
     layer = layer_of(labels.numbers, sides, spacing, volumes, contacts)
     first_is_apical = _first_is_apical(layer, labels, spacing, apical if isinstance(apical, str) else None, marker)
-    kept = _kept(layer, labels, keep)
+    kept = _kept(layer, labels, keep, gaps)
     tissue = _tissue(layer, labels, spacing, volumes, kept, first_is_apical)
-    _tell(tissue, layer, labels, volumes, kept)
-    tissue.remarks = labels.remarks
+    _tell(tissue, layer, labels, volumes, kept, {cell for pair in contacts for cell in pair})
+    tissue.remarks = _size_remarks(tissue) + labels.remarks
     tissue.quality = measured_quality(tissue, layer, labels, spacing, contacts, kept, first_is_apical)
     return MeasuredVolume(tissue, labels, sides, FIRST if first_is_apical else SECOND)
 
@@ -214,25 +220,33 @@ def _cut_cells(labels: Labels) -> Integers:
     return inside
 
 
+def _gap_text(labels: Labels, contacts: dict[tuple[int, int], float], gap_px: float, usual_um3: float) -> str:
+    """Return a remedy if most cells have no walls, or nothing."""
+    walls = [pair for pair, area in contacts.items() if area > WALL * usual_um3 ** (2 / 3)]
+    apart = labels.cells - len({cell for pair in walls for cell in pair})
+    many = labels.cells > FEW_CELLS and apart > labels.cells / 2
+    return f"; {apart} of {labels.cells} cells have no wall to another: raise gap_px, now {gap_px:g}" if many else ""
+
+
 def _cut_text(labels: Labels) -> str:
-    cut = len(_cut_cells(labels))
+    cut = len(_cut_cells(labels)) if labels.cells > FEW_CELLS else 0
     return f"; {cut} of {labels.cells} cells are cut by the border of the image: keep_cut = True keeps them" if cut else ""
 
 
-def _kept(layer: Layer, labels: Labels, keep: str) -> list[int]:
-    """Return the cells that become prisms, one piece."""
+def _kept(layer: Layer, labels: Labels, keep: str, gaps: str) -> list[int]:
+    """Return the cells that become prisms, one piece. `gaps` is a remedy if these are wide."""
     cut = _cut_cells(labels)
     kept = [cell for cell in layer.rings if cell not in set(cut.tolist())]
     if len(cut):
         labels.remarks.append(f"cut by the border of the image, and omitted: {_cells(cut.tolist(), labels)}; keep_cut = True keeps them")
     if not kept:
-        raise ValueError(f"volume: no cell has three corners where three cells meet{_cut_text(labels)}")
+        raise ValueError(f"volume: no cell has three corners where three cells meet{gaps or _cut_text(labels)}")
     pieces = _pieces(layer, kept)
     if len(pieces) > 1 and keep == "all":
         sizes = ", ".join(str(len(piece)) for piece in pieces[:5])
         cell = labels.names[pieces[1][0] - 1]
-        raise ValueError(f"volume: the tissue is in {len(pieces)} pieces, which share no wall, of {sizes} cells (cell {cell} is in the second); "
-                         "keep = \"largest\" omits all but the first, or raise gap_px")
+        raise ValueError(f"volume: the tissue is in {len(pieces)} pieces, which share no wall, of {sizes} cells (cell {cell} is in the second)"
+                         + (gaps or "; keep = \"largest\" omits all but the first, or raise gap_px"))
     flawed = sorted({*layer.flawed} & {*pieces[0]})
     if flawed:
         raise ValueError("volume: no prisms between their neighbours, which surround them or lie inside them: "
@@ -282,12 +296,27 @@ def _tissue(layer: Layer, labels: Labels, spacing: Floats, volumes: Floats, kept
     return tissue
 
 
-def _tell(tissue: LabelledTissue, layer: Layer, labels: Labels, volumes: Floats, kept: list[int]) -> None:
+def _size_remarks(tissue: LabelledTissue) -> list[str]:
+    """Return remarks on a spacing that is probably in another unit or order."""
+    height, (planes, rows, columns) = float(np.median(tissue.heights)), tissue.spacing_um
+    found = []
+    if not LEAST_HEIGHT < height < MOST_HEIGHT:
+        found.append(f"cells are {rounded(height)} µm high (median): check that the spacing is in µm")
+    uneven = abs(rows - columns) > SAME * columns
+    if uneven or planes < (1 - SAME) * columns:
+        found.append(f"spacing_um = ({planes:g}, {rows:g}, {columns:g}): {'rows and columns differ' if uneven else 'planes are finer than columns'}; "
+                     "check the order, which is planes, rows, columns")
+    return found
+
+
+def _tell(tissue: LabelledTissue, layer: Layer, labels: Labels, volumes: Floats, kept: list[int], touching: set[int]) -> None:
     """Remark on cells that are missing, large, or touch on one side only."""
     cut = set(_cut_cells(labels).tolist())
     without = [cell for cell in range(1, labels.cells + 1) if volumes[cell] > 0 and cell not in layer.rings and cell not in cut]
-    if without:
-        labels.remarks.append(f"without three corners at the middle height, and omitted: {_cells(without, labels)}")
+    for which, what in (([cell for cell in without if cell not in touching], "isolated"),
+                        ([cell for cell in without if cell in touching], "without three corners at the middle height")):
+        if which:
+            labels.remarks.append(f"{what}, and omitted: {_cells(which, labels)}")
     large = [cell for cell, is_large in zip(kept, large_cells(volumes[kept])) if is_large]
     if large:
         labels.remarks.append(f"more than {LARGE_CELL:g} times the volume of a usual cell, so two cells may have one label: "
@@ -304,9 +333,10 @@ def _tell(tissue: LabelledTissue, layer: Layer, labels: Labels, volumes: Floats,
         many = "1 pair of cells touches" if len(pairs) == 1 else f"{len(pairs)} pairs of cells touch"
         labels.remarks.append(f"{many} on one side only (scutoids), {named}{', …' if len(pairs) > 3 else ''}; the "
                               f"first at {labels.where(labels.place_of(pairs[0][0]))}: neighbours are those of the middle height")
-    for loop in _openings(layer, kept):
-        place = layer.middle[loop].mean(axis=0) / layer.spacing
-        labels.remarks.append(f"an opening of {len(loop)} edges in the layer, at {labels.where(np.round(place).astype(np.int64))}; "
+    if loops := _openings(layer, kept):
+        place = layer.middle[loops[0]].mean(axis=0) / layer.spacing
+        many = f"an opening of {len(loops[0])} edges" if len(loops) == 1 else f"{len(loops)} openings of {_listed([len(loop) for loop in loops])} edges"
+        labels.remarks.append(f"{many} in the layer, {'the first ' * (len(loops) > 1)}at {labels.where(np.round(place).astype(np.int64))}; "
                               "label missing cells, or leave it open")
 
 
@@ -319,8 +349,12 @@ def large_cells(volumes: Floats) -> NDArray[np.bool_]:
 
 def _cells(cells: list[int], labels: Labels) -> str:
     """Name cells and the place of the first."""
-    named = ", ".join(str(labels.names[cell - 1]) for cell in cells[:5])
-    return (f"{len(cells)} cell{'s' if len(cells) > 1 else ''} ({named}{', …' if len(cells) > 5 else ''}; the first at {labels.where(labels.place_of(cells[0]))})")
+    named = _listed([labels.names[cell - 1] for cell in cells])
+    return f"{len(cells)} cell{'s' if len(cells) > 1 else ''} ({named}; the first at {labels.where(labels.place_of(cells[0]))})"
+
+
+def _listed(values: list[int]) -> str:
+    return f"{', '.join(map(str, values[:5]))}{', …' * (len(values) > 5)}"
 
 
 def one_sided_pairs(layer: Layer, kept: list[int]) -> list[tuple[int, int]]:

@@ -9,18 +9,22 @@ from numpy.typing import NDArray
 SLAB = 16            # planes at a time
 LARGEST_DIRECT = 2**22  # of a label that is a place in a table
 FEWEST_VOXELS = 8    # per label on average; fewer are intensities
+SEGMENT = "segment the image first, for instance by skimage.segmentation.watershed or Cellpose"
+MASK = ("volume: two values, which are no label of each cell; number the cells, for instance by skimage.measure.label, or by "
+        "skimage.segmentation.watershed where they touch")
 BACKGROUND = 15      # times the volume of a usual cell: larger labels are lumen, yolk or medium
 
 
 class Labels(NamedTuple):
-    """Numbers of cells by voxel, with a margin of one voxel: 0 is background, `cells` + 1 beyond the image.
+    """Numbers of cells by voxel, with a margin of one voxel or more that has no cells: 0 is background, `cells` + 1 beyond the image.
 
-    `names` has the label of each number from 1; `origin` the voxel of the volume at the first one, z, y, x.
+    `names` has the label of each number from 1; `origin` the voxel of the volume at the first one, z, y, x; `shape` that of the volume.
     """
 
     numbers: NDArray[Any]
     names: NDArray[np.int64]
     origin: NDArray[np.int64]
+    shape: NDArray[np.int64]
     remarks: list[str]
 
     @property
@@ -29,7 +33,7 @@ class Labels(NamedTuple):
 
     def where(self, place: NDArray[Any]) -> str:
         """Describe a place in the array, z, y, x."""
-        plane, row, column = (place + self.origin).tolist()
+        plane, row, column = np.clip(place + self.origin, 0, self.shape - 1).tolist()
         return f"plane {plane}, row {row}, column {column}"
 
     def place_of(self, number: int) -> NDArray[np.int64]:
@@ -37,22 +41,22 @@ class Labels(NamedTuple):
         return np.array(np.unravel_index(int(np.argmax(self.numbers.reshape(-1) == number)), self.numbers.shape))
 
 
-def numbered_volume(volume: Any, background: int, keep_cut: bool) -> Labels:
-    """Return the labels of a volume of shape (planes, rows, columns)."""
-    volume = _whole_numbers(volume)
+def numbered_volume(volume: NDArray[Any], background: int, keep_cut: bool) -> Labels:
+    """Return the labels of a volume of `whole_numbers`."""
     names, counts = _labels_in(volume)
     remarks: list[str] = []
     is_cell = names != background
     usual = np.median(counts[is_cell]) if is_cell.any() else 0
     if volume.size < FEWEST_VOXELS * len(names):
-        raise ValueError(f"volume: {len(names)} values in {volume.size} voxels, as intensities have; segment it first, for instance by "
-                         "skimage.segmentation.watershed or Cellpose")
+        raise ValueError(f"volume: {len(names)} values in {volume.size} voxels, as intensities have; {SEGMENT}")
     for name, count in zip(names[is_cell].tolist(), counts[is_cell].tolist()):
         if is_cell.sum() > 3 and count > BACKGROUND * usual:
             is_cell[names == name] = False
             remarks.append(f"label {name}, of {count / usual:.0f} times the volume of a usual cell, was taken for background")
     if not is_cell.any():
         raise ValueError(f"volume: no cells; every voxel has label {background}, the background")
+    if len(names) == 2 and is_cell.sum() == 1:
+        raise ValueError(MASK)
     numbers = np.where(is_cell, np.cumsum(is_cell), 0)
     kept = names[is_cell]
     dtype = np.uint16 if len(kept) < 2**16 - 2 else np.uint32
@@ -62,15 +66,19 @@ def numbered_volume(volume: Any, background: int, keep_cut: bool) -> Labels:
 
 def _with_margin(found: NDArray[Any], low: NDArray[np.int64], shape: NDArray[np.int64], names: NDArray[Any], keep_cut: bool,
                  remarks: list[str]) -> Labels:
-    numbers = np.pad(found, 1)
+    borders = np.column_stack([low == 0, low + found.shape == shape])
+    margin = np.array([[1 + (keep_cut and border and bool(np.take(found, end, axis).any())) for end, border in zip((0, -1), borders[axis])]
+                       for axis in range(3)])  # of two voxels where kept cells meet the border, as elsewhere
+    numbers = np.pad(found, margin)
     for axis in range(3):
-        for end, is_border in ((0, low[axis] == 0), (-1, low[axis] + found.shape[axis] == shape[axis])):
-            if is_border and not keep_cut:
+        for end, border in zip((0, -1), borders[axis]):
+            if border and not keep_cut:
                 numbers[(slice(None),) * axis + (end,)] = len(names) + 1
-    return Labels(numbers, names.astype(np.int64), low - 1, remarks)
+    return Labels(numbers, names.astype(np.int64), low - margin[:, 0], shape, remarks)
 
 
-def _whole_numbers(volume: Any) -> NDArray[Any]:
+def whole_numbers(volume: Any) -> NDArray[Any]:
+    """Return a volume as an array of shape (planes, rows, columns). ValueError if it is none of labels."""
     if isinstance(volume, np.ma.MaskedArray) and np.any(volume.mask):
         raise ValueError("volume: voxels are masked; volume.filled(0) makes them background")
     array = np.asarray(volume)
@@ -84,10 +92,10 @@ def _whole_numbers(volume: Any) -> NDArray[Any]:
     if array.dtype.kind == "f":
         for slab in _slabs(array):
             if not np.isfinite(slab).all() or (slab != np.floor(slab)).any():
-                raise ValueError("volume: values that are no whole numbers; give labels, one number per cell; intensities need a segmentation")
+                raise ValueError("volume: values that are no whole numbers; give labels, one number per cell; for intensities, " + SEGMENT)
         array = array.astype(np.int64)
     if array.dtype.kind == "b":
-        raise ValueError("volume: two values, which are no label of each cell; number the cells, by skimage.measure.label for instance")
+        raise ValueError(MASK)
     return array
 
 

@@ -6,12 +6,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .voxel_labels import Labels
+from .voxel_labels import SEGMENT, Labels
 from .voxel_surfaces import Integers, components, steps_of
 
 SMALL = 0.25     # of a usual cell: pieces of labels and holes up to this volume are repaired
 SPECK = 0.05     # of a usual cell: smaller cells are given to their surroundings
 MOST_PIECES = 0.5  # of labels: more further pieces are no accident
+MOST_SPECKS = 20   # pieces of a label on average, if so: more are intensities
 TOLD_GAPS = 0.005  # of the volume of all cells
 
 
@@ -82,12 +83,17 @@ def _without_pieces(labels: Labels) -> NDArray[np.int64]:
     order = order[rest[order]]
     again = order[np.concatenate([[False], of[order][1:] == of[order][:-1]])]  # further large pieces of a label
     if len(again) > MOST_PIECES * cells:
-        raise ValueError(f"volume: its {cells} labels lie in {int(rest.sum())} large pieces, as intensities or regions do; number the pieces: "
-                         "skimage.measure.label(volume, connectivity=1)")
+        found = f"volume: its {cells} labels lie in "
+        if is_cell.sum() > MOST_SPECKS * cells:
+            raise ValueError(f"{found}{is_cell.sum()} pieces, as intensities do; {SEGMENT}")
+        raise ValueError(f"{found}{rest.sum()} large pieces; number the pieces: skimage.measure.label(volume, connectivity=1)")
     names = labels.names
-    for piece in again.tolist():
-        labels.remarks.append(f"a piece of cell {names[of[piece] - 1]} ({size[piece]} voxels at {labels.where(_at(begin[piece], numbers.shape))})"
-                              " was taken for a cell of its own; join them, if they are one")
+    if len(again):
+        one = f"cell {names[of[again[0]] - 1]} ({size[again[0]]} voxels at {labels.where(_at(begin[again[0]], numbers.shape))})"
+        named = ", ".join(map(str, names[of[again[:5]] - 1])) + ", …" * (len(again) > 5)
+        labels.remarks.append(f"a piece of {one} was taken for a cell of its own; join them, if they are one" if len(again) == 1 else
+                              f"{len(again)} pieces of cells {named} were taken for cells of their own, the first of {one}; join them, if they "
+                              "are one, or number all cells differently")
     now = np.where(is_cell, of, np.where(of == beyond, beyond + len(again), 0))
     now[again] = cells + 1 + np.arange(len(again))
     flat = numbers.reshape(-1)
@@ -125,8 +131,9 @@ def _tell(labels: Labels, goes: NDArray[np.bool_], hole: NDArray[np.bool_], of: 
             continue
         most = int(pieces[np.argmax(size[pieces])])
         name = f" of cell {labels.names[of[most] - 1]}" if of[most] else ""
-        labels.remarks.append(f"{len(pieces)} small {one if len(pieces) == 1 else several} given to the surroundings (largest:"
-                              f"{name} {size[most]} voxel{'s' * (size[most] > 1)} at {labels.where(_at(begin[most], shape))})")
+        what = "given to the surroundings" if of[most] else "filled"
+        labels.remarks.append(f"{len(pieces)} small {one if len(pieces) == 1 else several} {what} (largest: "
+                              f"{size[most]} voxel{'s' * (size[most] > 1)}{name} at {labels.where(_at(begin[most], shape))})")
 
 
 def _fill(numbers: NDArray[Any], voxels: Integers, beyond: int, background: bool = True) -> None:
@@ -156,15 +163,15 @@ def _close_gaps(labels: Labels, gap_px: float, spacing: NDArray[np.float64]) -> 
     numbers = labels.numbers
     radius = np.maximum(1, np.floor(gap_px * spacing.min() / spacing + 0.5)).astype(int)
     beyond = len(labels.names) + 1
-    tissue = (numbers > 0) & (numbers != beyond)
-    closed = _spread(tissue, radius)
-    np.logical_not(closed, out=closed)
-    closed = _spread(closed, radius)
-    np.logical_not(closed, out=closed)
-    closed &= numbers == 0
+    wide = np.pad((numbers > 0) & (numbers != beyond), radius[:, None])  # what is beyond the margin is no gap
+    cells = np.count_nonzero(wide)
+    for _ in range(2):  # dilation, then erosion
+        wide = ~_spread(wide, radius)
+    closed = wide[tuple(slice(one, -one) for one in radius.tolist())] & (numbers == 0)
     gaps = np.flatnonzero(closed)
-    if len(gaps) > TOLD_GAPS * np.count_nonzero(tissue):
-        labels.remarks.append(f"gaps between cells were closed: {len(gaps)} voxels, the first at {labels.where(_at(gaps[0], numbers.shape))}")
+    if len(gaps) > TOLD_GAPS * cells:
+        labels.remarks.append(f"gaps between cells were closed: {100 * len(gaps) / (cells + len(gaps)):.2g} % of the tissue, the first at "
+                              f"{labels.where(_at(gaps[0], numbers.shape))}")
     _fill(numbers, gaps, beyond, background=False)
     return len(gaps) > 0
 

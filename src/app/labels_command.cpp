@@ -12,7 +12,8 @@ void add_labels_command(CLI::App& app, int& status) {
   command->prefix_command();  // all words are the package's
   command->footer(
       "Needs pip install 'plica[image]'.\n"
-      "Options: plica labels FILE --help\n"
+      "Options (FILE --help explains them):\n"
+      "  --out --spacing-um --apical --background --gap-px --keep-cut --keep --picture --overwrite\n"
       "Example: plica labels cyst.tif --spacing-um 1 0.3 0.3 --apical inside --out cells.vtp --picture cells.png");
   command->callback([command, &status] {
     std::vector<std::string> words = {"labels"};

@@ -377,11 +377,15 @@ void advise_on_furrow(const Scenario& scenario, const Tissue& tissue, Messages& 
         "furrow.region: the {} is measured on region {}, but apical surfaces contract in {}; set furrow.region to a "
         "contracting region",
         fold, measured, fmt::join(regions, ", "));
+  const bool is_off_centre = is_from_file(shape_of(scenario.embryo)) && !scenario.embryo.centre;
   if (!measured.empty() || !regions.empty())
     if (make_furrow_sites(scenario, tissue).vml.empty())
-      out.warn("region {} does not intersect the plane y = 0, so {} no value; use [monitor.NAME] to measure any region",
-               measured.empty() ? regions.front() : measured,
-               is_furrow ? "furrow depth, furrow lips and VML have" : "the fold depth has");
+      out.warn(
+          "region {} does not intersect the plane y = 0, so {} no value; use [monitor.NAME] with quantity = "
+          "\"depth\"{}",
+          measured.empty() ? regions.front() : measured,
+          is_furrow ? "furrow depth, furrow lips and VML have" : "the fold depth has",
+          is_off_centre ? ", or set embryo.centre = true" : "");
 }
 
 void advise_on_mesh(const Scenario& scenario, const Tissue& tissue, Messages& out) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 #include "core/files.hpp"
@@ -50,6 +51,17 @@ std::optional<ScenarioSource> find_base(const Document& document, const std::vec
     report(error.what(), "set base to a built-in name or a path relative to this file");
   }
   return {};
+}
+
+/// Reports a file of cells in place of a scenario.
+void refuse_mesh(const std::string& file) {
+  constexpr std::array endings = {".vtp", ".vtk", ".vtu", ".ply", ".obj", ".off", ".stl", ".h5", ".hdf5", ".hf5"};
+  const fs::path path(file);
+  if (std::ranges::count(endings, path.extension().string()) == 0) return;
+  throw ScenarioError({{file, 0, "", "is a mesh, not a scenario",
+                        fmt::format("write a scenario with [embryo], file = \"{}\" and its shape: \"prisms\" if plica "
+                                    "labels made it, \"surface\" for polygons, \"file\" for hexahedra",
+                                    path.filename().string())}});
 }
 
 /// Reads the scenario and its bases, the deepest first. Incomplete if an error was reported.
@@ -237,6 +249,7 @@ ScenarioSource find_scenario(const std::string& name_or_path, const fs::path& be
   if (!is_there(path))
     throw UsageError(fmt::format("\"{}\" is neither a built-in scenario nor a file; {}", name_or_path,
                                  nearest_scenario(path, beside)));
+  refuse_mesh(name_or_path);
   return {path.stem().string(), name_or_path, read_file(path, largest_scenario_bytes)};
 }
 

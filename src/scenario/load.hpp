@@ -17,7 +17,7 @@ struct ScenarioSource {
 };
 
 /// Finds a built-in by name, or reads a file; a built-in takes precedence over a file of the same name.
-/// Throws UsageError if it is neither, FileError if the file cannot be read.
+/// Throws UsageError if it is neither, FileError if the file cannot be read, ScenarioError if it is a mesh.
 /// The message suggests built-in names, and files in the folder of the path, relative to `beside`.
 ScenarioSource find_scenario(const std::string& name_or_path, const std::filesystem::path& beside = {});
 

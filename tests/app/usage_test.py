@@ -62,6 +62,13 @@ class Usage(CommandLine):
             result = self.call(*arguments, status=2)
             self.assertTrue(result.stderr.startswith(f"plica: {said}"), result.stderr)
 
+    def test_a_mesh_is_named_as_one(self):
+        for name, text in (("cells.ply", "ply\nformat ascii 1.0\n"), ("cells.vtp", "<VTKFile>\n  a.b.c.d.e\n"), ("large.vtp", " " * 20_000_000)):
+            mesh = self.write(text, name)
+            for words in (["run", mesh, "--out", self.out], ["check", mesh]):
+                said = self.call(*words, status=2).stderr
+                self.assertIn(f'{name}: is a mesh, not a scenario; write a scenario with [embryo], file = "{name}"', said)
+
     def test_threads_are_an_option_of_whatever_computes(self):
         scenario = self.write(BLOCK)
         self.assertEqual(plica("check", scenario, "--threads", "2").stdout, plica("check", scenario).stdout)

@@ -1,6 +1,7 @@
 """Damage to volumes of labels, as segmentations have it: each takes a volume and a random generator, and returns a volume.
 
-As a script: makes N random volumes of drawn tissues with one to three damages each, and reports what becomes of them.
+As a script: makes N random volumes of drawn tissues with one to three damages each, and reports what becomes of them. Of some, cut cells
+are kept, which gives the same cells as a margin around the image.
 Usage: damaged_volumes.py [N [SEED]]
 """
 import sys
@@ -115,16 +116,23 @@ def drawn(kind, spacing, seed, size=1.0):
     return volume, "outside", tissue
 
 
-def outcome(plica, volume, spacing, apical):
+def outcome(plica, volume, spacing, apical, keep_cut):
     """Return the tissue, or the error."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            tissue = plica.tissue_of_labels(volume, spacing, apical=apical)
+            tissue = plica.tissue_of_labels(volume, spacing, apical=apical, keep_cut=keep_cut)
             tissue.quality.scaled_jacobian  # makes the elements
             return tissue
         except (ValueError, plica.PlicaError) as error:
             return error
+
+
+def differ(one, other, margin):
+    """Return whether the second outcome, of the image with a margin in um, has other cells."""
+    if isinstance(one, Exception) or isinstance(other, Exception):
+        return type(one) is not type(other)
+    return one.apical.shape != other.apical.shape or not np.allclose(one.apical + margin[::-1], other.apical)
 
 
 def main():
@@ -132,7 +140,7 @@ def main():
 
     count, seed = (int(word) for word in (sys.argv[1:] + ["200", "1"][len(sys.argv) - 1:])[:2])
     volumes = {(kind, spacing): drawn(kind, spacing, 3) for kind in ("cyst", "egg", "tube", "sheet") for spacing in ((0.5, 0.5, 0.5), FLAT)}
-    ends = {"tissue": 0, "error": 0}
+    ends = {"tissue": 0, "error": 0, "cut cells kept": 0, "other cells with a margin": 0}
     for number in range(count):
         random = np.random.default_rng([seed, number])
         kind, spacing = list(volumes)[random.integers(len(volumes))]
@@ -140,8 +148,14 @@ def main():
         names = list(random.choice(list(DAMAGES), random.integers(1, 4), replace=False))
         for name in names:
             volume = DAMAGES[name](volume, random)
-        found = outcome(plica, volume, spacing, apical)
-        what = f"{number:3d} {kind:5s} {spacing[0]:g} {' + '.join(names):40s}"
+        keep_cut = random.uniform() < (0.7 if "cut" in names else 0.1)
+        found = outcome(plica, volume, spacing, apical, keep_cut)
+        what = f"{number:3d} {kind:5s} {spacing[0]:g} {' + '.join(names + ['keep_cut'] * keep_cut):40s}"
+        if keep_cut:
+            ends["cut cells kept"] += 1
+            if differ(found, outcome(plica, np.pad(volume, 2), spacing, apical, False), 2 * np.array(spacing)):
+                ends["other cells with a margin"] += 1
+                what += " OTHER CELLS WITH A MARGIN"
         if isinstance(found, Exception):
             ends["error"] += 1
             print(f"{what} error: {found}")
@@ -151,7 +165,8 @@ def main():
             print(f"{what} {len(found.cells)} cells, neighbours {100 * quality.neighbours_right:.1f} %, volumes "
                   f"{100 * np.median(abs(quality.volume_error)):.1f} %, Jacobian {quality.scaled_jacobian.min():.2f}; {len(found.remarks)} remarks")
     print(ends)
+    return ends["other cells with a margin"] > 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

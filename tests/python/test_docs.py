@@ -1,6 +1,8 @@
 """The Python of the documentation runs as it stands."""
 import re
 import runpy
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -114,7 +116,7 @@ def test_answers_page(tmp_path, monkeypatch):
 
 
 def test_surface_page(tmp_path, monkeypatch):
-    """A drawn tube becomes prisms, in a file that a scenario reads."""
+    """A drawn tube becomes prisms, in a file that the page's scenario reads."""
     for package in ("skimage", "scipy", "tifffile"):
         pytest.importorskip(package)
     import plica
@@ -125,9 +127,11 @@ def test_surface_page(tmp_path, monkeypatch):
     drawn = Tube(60, radius=12, length=30, height=6, seed=3)
     tifffile.imwrite("labels.tif", drawn.labels((1, 0.3, 0.3))[0])
     page = (ROOT / "docs/how-to/surface.md").read_text(encoding="utf-8")
-    (block,) = re.findall(r"^```python\n(import plica.*?)^```", page, re.M | re.S)
-    exec(compile(block, "surface.md", "exec"), {})
+    (command,) = re.findall(r"^plica (labels .*)$", page, re.M)
+    subprocess.run([sys.executable, "-m", "plica", *command.split()], check=True)
     assert (tmp_path / "check.png").stat().st_size > 10_000
-    layer = {"format": 1, "embryo": {"shape": "prisms", "file": "cells.ply"}, "time": {"end_s": 1}}
-    simulation = plica.Simulation(plica.Scenario(layer))
+    (scenario,) = re.findall(r"^# fold.toml\n(.*?)^```", page, re.M | re.S)
+    (tmp_path / "fold.toml").write_text(scenario, encoding="utf-8")
+    simulation = plica.Simulation(plica.Scenario("fold.toml"))
     assert 50 <= len(simulation.cell_data["label"]) <= 60
+    assert simulation.cell_data["label"][simulation.regions["pit"]].tolist() == [7]

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 import warnings
 from pathlib import Path
 
@@ -85,11 +86,11 @@ def test_cells_have_their_numbers():
 
 @pytest.mark.parametrize(("damage", "kind", "spacing", "said"), [
     ("noise", "cyst", HALF, "small pieces given to the surroundings"),
-    ("holes", "egg", HALF, "holes? given to the surroundings"),
-    ("gaps", "tube", HALF, "gaps between cells were closed"),
+    ("holes", "egg", HALF, "small holes? filled"),
+    ("gaps", "tube", HALF, "gaps between cells were closed: .. % of the tissue, the first at plane"),
     ("merged", "cyst", HALF, "two cells may have one label"),
     ("split", "sheet", HALF, None),
-    ("missing", "cyst", HALF, "an opening of . edges in the layer, at plane"),
+    ("missing", "cyst", HALF, "openings? of .* edges in the layer, .*at plane"),
     ("cut", "sheet", HALF, "cut by the border of the image, and omitted: .* cells .*; the first at plane"),
     ("lower", "cyst", HALF, None),
     ("rough_walls", "cyst", damaged_volumes.FLAT, None),
@@ -108,6 +109,37 @@ def test_damage_is_repaired_and_reported(damage, kind, spacing, said):
     assert tissue.quality.scaled_jacobian.min() > 0.1
     if said:
         assert any(re.search(said, remark) for remark in tissue.remarks), tissue.remarks
+
+
+def places(remarks, margin=0):
+    """Return remarks with their places moved by a margin."""
+    return [re.sub(r"(plane|row|column) (-?\d+)", lambda found: f"{found[1]} {int(found[2]) - margin}", one) for one in remarks]
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("ends", [(True, True), (True, False), (False, True)])
+def test_cut_cells_are_kept_as_in_an_image_with_a_margin(axis, ends):
+    """The border does not join cells at opposite ends of the image, also with gaps between cells."""
+    along = np.moveaxis(drawn("tube")[0], 2, 0)
+    volume = np.moveaxis(along[9 * ends[0]:len(along) - 9 * ends[1]], 0, axis)
+    assert (np.take(volume, 0, axis).any(), np.take(volume, -1, axis).any()) == ends
+    for one, gap_px in ((volume, 1), (damaged_volumes.gaps(volume, None), 1), (volume, 3)):
+        kept, wide = made(one, keep_cut=True, gap_px=gap_px), made(np.pad(one, 2), gap_px=gap_px)
+        assert np.array_equal(kept.cell_data["label"], wide.cell_data["label"])
+        assert np.allclose(kept.apical + 1, wide.apical) and np.allclose(kept.basal + 1, wide.basal)
+        assert kept.quality.neighbours_right > 0.95 and pairs_of(kept) == pairs_of(wide)
+        assert [remark for remark in kept.remarks if "-1" in remark] == []
+        assert kept.remarks == places(wide.remarks, 2)
+        assert gap_px > 1 or one is not volume or not any("gaps" in remark for remark in kept.remarks)
+
+
+def test_wide_gaps_are_closed_in_the_tissue_only():
+    """Labels that begin a voxel from the border are closed as those far from it."""
+    labels = drawn("sheet")[0]
+    box = tuple(slice(max(at.min() - 1, 0), at.max() + 2) for at in np.nonzero(labels))
+    near, far = made(labels[box], gap_px=3), made(np.pad(labels[box], 8), gap_px=3)
+    assert np.allclose(near.apical + 4, far.apical) and pairs_of(near) == pairs_of(far)
+    assert near.remarks == places(far.remarks, 8)
 
 
 def test_large_cells_of_a_tissue_with_cells_of_many_sizes_are_not_suspected():
@@ -151,17 +183,54 @@ def test_scutoids_are_counted():
 @pytest.mark.parametrize(("volume", "spacing", "said"), [
     (np.zeros((4, 5, 6), int), HALF, "no cells; every voxel has label 0"),
     (np.zeros((4, 5), int), HALF, "one plane; plica.polygons_of_labels reads flat"),
+    (np.zeros((4, 5), int), None, "one plane; plica.polygons_of_labels reads flat"),
     (np.zeros((2, 2, 4, 5, 6), int), HALF, "one channel and one time"),
     (np.full((4, 5, 6), 0.5), HALF, "values that are no whole numbers"),
-    (np.random.default_rng(1).integers(0, 60_000, (30, 30, 30)), HALF, "as intensities have"),
-    (np.ones((9, 9, 9), int), HALF, "no cell reaches from one free side to the other"),
+    (np.random.default_rng(1).integers(0, 60_000, (30, 30, 30)), HALF, "as intensities have; segment the image first"),
+    (np.random.default_rng(1).integers(0, 256, (30, 30, 30)), HALF, "labels lie in .* pieces, as intensities do; segment the image first"),
+    (np.ones((9, 9, 9), int), HALF, "no cell reaches from one free side to the other; .* both sides$"),
     (np.ones((9, 9, 9), bool), HALF, "two values"),
+    (255 * np.pad(np.ones((9, 9, 9), np.uint8), 2), HALF, "two values, which are no label of each cell"),
     (np.ones((9, 9, 9), int), (1, 0, 1), r"spacing_um: \(1, 0, 1\); give three numbers above 0"),
     (np.ones((9, 9, 9), int), None, "spacing_um: None; give three numbers"),
 ])
 def test_bad_volumes(volume, spacing, said):
     with pytest.raises(ValueError, match=said):
         plica.tissue_of_labels(volume, spacing, apical="outside")
+
+
+def test_wide_gaps_are_named():
+    labels = damaged_volumes.gaps(drawn("tube")[0], None)
+    with pytest.raises(ValueError, match=r"7. of 80 cells have no wall to another: raise gap_px, now 0$"):
+        made(labels, gap_px=0)
+
+
+def test_sizes_and_spacings_are_told():
+    """Median sizes, and remarks on a spacing in another unit or order."""
+    labels = drawn("tube")[0]
+    right = made(labels)
+    height, width, *extent = (float(word) for word in re.findall(r"\d[\d.]*", right.sizes))
+    assert height == pytest.approx(6, rel=0.05) and width == pytest.approx((2 * np.pi * 12 * 30 / 80)**0.5, rel=0.1)
+    assert extent == pytest.approx([30, 30, 30], abs=1) and right.sizes in repr(right)
+    assert not any("spacing" in remark for remark in right.remarks)
+    for spacing, said in (((500, 500, 500), r"cells are 61.0 µm high \(median\): check that the spacing is in µm"),
+                          ((5e-7, 5e-7, 5e-7), "cells are 6.0.e-06 µm high"),
+                          ((0.3, 0.3, 0.5), r"spacing_um = \(0.3, 0.3, 0.5\): rows and columns differ; check the order, which is planes, rows"),
+                          ((0.3, 0.5, 0.5), "planes are finer than columns")):
+        assert re.search(said, made(labels, spacing).remarks[0]), spacing
+    assert not any("spacing" in remark for remark in made(labels, (1, 0.5, 0.5)).remarks)
+
+
+def test_equal_remarks_are_one():
+    """Labels that stand for two cells each, and several openings."""
+    labels = drawn("tube")[0]
+    for count, said in ((1, "^a piece of cell 1 .* was taken for a cell of its own"), (3, "^3 pieces of cells 1, 2, 3 were taken for cells of")):
+        twice = np.where((labels > 40) & (labels <= 40 + count), labels - 40, labels)
+        assert len([remark for remark in made(twice).remarks if re.search(said, remark)]) == 1, count
+    middle = drawn("tube")[2].seeds.mean(axis=0)
+    gone = 1 + drawn("tube")[2].tree.query(middle + [[0, 12, 0], [0, -12, 0]])[1]
+    remarks = made(np.where(np.isin(labels, gone), 0, labels)).remarks
+    assert any(re.search(r"^2 openings of \d, \d edges in the layer, the first at plane \d+", remark) for remark in remarks), remarks
 
 
 def test_prisms_make_scenarios_and_files(tmp_path):
@@ -247,11 +316,27 @@ def test_command(tmp_path):
     assert asked.returncode == 2 and "which side of the layer is apical is not known" in asked.stderr
     done = subprocess.run([*words, "--apical", "inside"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    assert "cells.vtp: 80 cells\nneighbours right: " in done.stdout
+    assert re.search(r"cells.vtp: 80 cells, 6.11 µm high and 5.36 µm wide .*; tissue 30.5 × .* µm \(x, y, z\)\nneighbours right: ", done.stdout), done.stdout
+    assert "\ngood: neighbours over 95 %" in done.stdout
+    lines = done.stdout.split("In a scenario:\n")[1]
+    scenario = plica.Scenario({"format": 1, **tomllib.loads(lines)})
+    assert len(plica.Simulation(scenario).cell_data["label"]) == 80
     again = subprocess.run([*words, "--apical", "inside"], capture_output=True, text=True)
     assert again.returncode == 4 and "exists; set --overwrite" in again.stderr
     down = subprocess.run([*words, "--apical", "-z", "--overwrite"], capture_output=True, text=True)
     assert 'apical: "-z", but no side of the layer faces there' in down.stderr
+    np.save(tmp_path / "cut.npy", drawn("tube")[0][:, :, 9:-9])
+    words[4] = str(tmp_path / "cut.npy")
+    cut = subprocess.run([*words, "--apical", "inside", "--overwrite"], capture_output=True, text=True)
+    assert "; --keep-cut keeps them\n" in cut.stdout and "keep_cut" not in cut.stdout, cut.stdout
+    words[6] = "0.8"
+    swapped = subprocess.run([*words, "--apical", "inside", "--overwrite"], capture_output=True, text=True)
+    assert "note: --spacing-um" not in swapped.stdout
+    words[6:9] = ["0.5", "0.5", "0.8"]
+    swapped = subprocess.run([*words, "--apical", "inside", "--overwrite"], capture_output=True, text=True)
+    assert "note: --spacing-um 0.5 0.5 0.8: rows and columns differ; check the order" in swapped.stdout
+    nowhere = subprocess.run([*words[:5], *words[9:], "--apical", "inside", "--overwrite"], capture_output=True, text=True)
+    assert "cut.npy: --spacing-um: not in the file; give three numbers" in nowhere.stderr
 
 
 @pytest.mark.skipif("PLICA" not in os.environ, reason="PLICA names the program")
@@ -263,3 +348,6 @@ def test_the_program_hands_over(tmp_path):
     assert done.returncode == 0 and "cells.ply: 80 cells" in done.stdout, done.stderr
     refused = subprocess.run(words, env={**os.environ, **path}, capture_output=True, text=True)
     assert refused.returncode == 2 and "--out" in refused.stderr
+    own, whole = (subprocess.run([*one, "labels", "--help"], capture_output=True, text=True).stdout
+                  for one in ([os.environ["PLICA"]], [sys.executable, "-m", "plica"]))
+    assert {*re.findall(r"--[a-z-]+", own)} == {*re.findall(r"--[a-z-]+", whole)}

@@ -138,7 +138,7 @@ stiffness_nN_per_um = 1
 )"});
   const auto lines = lines_with("does not intersect the plane y = 0", advice(scenario, *make_model(scenario)));
   ASSERT_EQ(lines.size(), 1U);
-  EXPECT_SAYS(lines[0], "so the fold depth has no value; use [monitor.NAME]");
+  EXPECT_SAYS(lines[0], "so the fold depth has no value; use [monitor.NAME] with quantity = \"depth\"");
 }
 
 using Overrides = std::vector<std::string>;

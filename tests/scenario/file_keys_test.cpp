@@ -144,12 +144,18 @@ TEST_F(FileKeys, CellsAndRegionsThatDoNotExistAreErrors) {
     const std::string said = model_errors(text + "[region.r]\nids = [0, 99]\n");
     EXPECT_SAYS(said, "region.r.ids: cell 99 does not exist; set ids to numbers from 0 to " + last);
     EXPECT_EQ(model_errors(text + "[region.r]\nids = [0, " + last + "]\n"), "");
+    EXPECT_EQ(said.find("label"), std::string::npos);
   }
   const std::string acts = "[contraction.c]\nregion = \"gene\"\nstiffness_nN_per_um = 1\n";
   const std::string said = model_errors(squares(acts));
   EXPECT_SAYS(said, "region \"gene\" does not exist");
   EXPECT_SAYS(said, "add [region.gene] with array = \"gene\"");
   EXPECT_EQ(model_errors(squares(acts + "[region.gene]\narray = \"gene\"\n")), "");
+  std::string labelled = read_file(folder / "a.ply", 100'000);
+  labelled.replace(labelled.find("gene"), 4, "label");
+  write("a.ply", labelled);
+  EXPECT_SAYS(model_errors(squares("[region.r]\nids = [99]\n")),
+              "set ids to numbers from 0 to 2; label 99 is array = \"label\", above = 98.5, below = 99.5");
 }
 
 // Three cells of two triangles each about one point.

@@ -87,7 +87,7 @@ class FoldWidget(Container):  # type: ignore[type-arg]
             warnings.simplefilter("ignore")  # they are shown as remarks
             self.tissue = plica.tissue_of_labels(np.asarray(layer.data), self.spacing_um(), apical=side)
         layer.scale = self.spacing_um()  # where the cells are
-        self.remarks.value = "\n".join([repr(self.tissue.quality), "", *self.tissue.remarks])
+        self.remarks.value = "\n".join([f"cells {self.tissue.sizes}", repr(self.tissue.quality), "", *self.tissue.remarks])
         self._replace(cells_layer(self.tissue))
         self.start.enabled = True
         self.status.value = f"{len(self.tissue.cells)} cells"

@@ -259,9 +259,12 @@ void add_regions(const Scenario& scenario, Tissue& tissue, std::vector<Diagnosti
   for (const auto& [name, region] : scenario.regions) {
     if (const auto none = std::ranges::find_if(region.ids, [&](int id) { return id >= static_cast<int>(cells); });
         none != region.ids.end()) {
+      std::string remedy = fmt::format("set ids to numbers from 0 to {}", cells - 1);
+      if (tissue.cell_arrays.contains("label"))
+        remedy +=
+            fmt::format("; label {} is array = \"label\", above = {}, below = {}", *none, *none - 0.5, *none + 0.5);
       errors.push_back(diagnostic_at(scenario, fmt::format("region.{}.ids", name),
-                                     fmt::format("cell {} does not exist", *none),
-                                     fmt::format("set ids to numbers from 0 to {}", cells - 1)));
+                                     fmt::format("cell {} does not exist", *none), remedy));
       continue;
     }
     const CellSet& set = resolve(name);
@@ -287,8 +290,8 @@ ScenarioTable region_table() {
           "Centred strip of the face: cells along y (z on side and end faces)."),
       row("ids", &R::ids, not_negative, "Cell numbers, from 0."),
       row("array", &R::array, anything, "Cell array: cells where it is not 0, or lies within `above` and `below`."),
-      row("above", &R::above, anything, "Lower bound of the array."),
-      row("below", &R::below, anything, "Upper bound of the array."),
+      row("above", &R::above, anything, "Lower bound of the array, excluded."),
+      row("below", &R::below, anything, "Upper bound of the array, excluded."),
       row("angle_deg", &R::angle_deg, anything,
           "Angle of the cell centre about the axis, -180 to 180; 0: ventral, 90: right."),
       row("length_percent", &R::length_percent, between(0, 100),
