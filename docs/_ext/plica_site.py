@@ -73,7 +73,8 @@ def python_reference(names):
     for name in names.split():
         thing = getattr(plica, name)
         if inspect.isclass(thing):
-            fields = ", ".join(getattr(thing, "_fields", ()))  # of a named tuple: its docstring has them
+            # Of a named tuple: its docstring has them. An inherited `shape` would be a second target of types such as "shape (n,)".
+            fields = ", ".join(getattr(thing, "_fields", () if "shape" in vars(thing) else ("shape",)))
             ours = any(base.__module__.startswith("plica") for base in thing.__bases__) and not issubclass(thing, Exception)
             inherited = "   :inherited-members:\n" if ours else ""
             text += f".. autoclass:: plica.{name}\n   :members:\n{inherited}   :exclude-members: {fields}\n\n"

@@ -125,7 +125,7 @@ class Frame:
         shape : (int, int, int), optional
             Planes, rows and columns; by default as many as the cells need. Cells outside are cut.
         origin_um : (float, float, float), optional
-            Centre of the first voxel, z, y, x; by default 0 if `shape` is given, as in `plica.tissue_of_labels`, else below all cells.
+            Centre of the first voxel, z, y, x; by default 0 if ``shape`` is given, as in `plica.tissue_of_labels`, else below all cells.
 
         Returns
         -------
