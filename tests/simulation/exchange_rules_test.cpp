@@ -4,6 +4,7 @@
 #include "core/threads.hpp"
 #include "support/resumed.hpp"
 #include "support/scenarios.hpp"
+#include "tissue/faces.hpp"
 
 namespace {
 
@@ -128,6 +129,29 @@ TEST(ExtrusionOfCells, AreSmallByEachBoundThatIsGiven) {
   EXPECT_EQ(leaving({}, 9), 0);
   EXPECT_EQ(leaving(20, 9), 0);
   EXPECT_EQ(leaving(2, 80), 0);
+}
+
+// Neighbours are as before, and walls that were judged only stay as they are.
+TEST(ExchangeOfCells, IsUndoneWhereNoStepSucceeds) {
+  Simulation run(scenario_of(extension));
+  auto before = wall_neighbours(run.model().tissue);
+  while (run.state().exchanges.count == 0) {
+    before = wall_neighbours(run.model().tissue);
+    ASSERT_TRUE(run.step());
+  }
+  Model model(run.model());
+  State state(run.state());
+  const auto without_order = [](std::vector<std::vector<CellId>> cells) {
+    for (auto& of_cell : cells) std::ranges::sort(of_cell);
+    return cells;
+  };
+  EXPECT_NE(without_order(wall_neighbours(model.tissue)), without_order(before));
+  const auto outcome = undo_exchanges(model, state, {"all", 0.5, 0.85, 0});
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->turns.size(), static_cast<std::size_t>(run.state().exchanges.count));
+  EXPECT_EQ(without_order(wall_neighbours(model.tissue)), without_order(before));
+  EXPECT_EQ(state.exchanges.count, 0);
+  EXPECT_NEAR(state.exchanges.energy, run.state().exchanges.energy + outcome->energy, 1e-12);
 }
 
 TEST(ExtrusionOfCells, EveryOneThatIsToldLeaves) {
