@@ -434,8 +434,8 @@ bool Simulation::advance_signals(const Model& model, State& next) {
   return false;
 }
 
-// Advance the state by one step; `before` receives the old state. Empty on failure or stop, with the state unchanged
-// but for cells that were mended.
+// Advance the state by one step; `before` receives the old state. Empty on failure or stop: the state is unchanged
+// then, except that cells may have been split again and exchanges undone.
 std::optional<StepReport> Simulation::take_step(double until_s, State& before) {
   State& next = before;
   int refused = 0, wasted_iterations = 0, wasted_solves = 0, mendings = 0;
