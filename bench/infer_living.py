@@ -4,11 +4,12 @@ and tolerance, by plica.infer. Shapes are displacements and ratios of areas sinc
 
 Wanted of --part 1: correlation above 0.9 within 60 runs.
 
-usage: infer_living.py [--part 0.5] [--elements 2 2 2] [--noise 0.02] [--threads N] [--keep DIR], with a Python that finds
-plica, as build/venv's with PYTHONPATH=build/release/python. --part 1 is drosophila-living with 6256 cells, 0.5 has cells of
-twice the width. Prints JSON: cells, runs, correlation of found and true factors, in all cells and in the ventral third,
-coverage of 90 % intervals, misfits (found; of the true factors, by mesh and steps), and seconds of processor time of the target, the
-inference and one run. DIR keeps target and search, so an interrupted inference continues; its seconds are those of the last session.
+usage: infer_living.py [--part 0.5] [--elements 1 1 3] [--model-elements 1 1 2] [--noise 0.02] [--threads N] [--keep DIR], with
+a Python that finds plica, as build/venv's with PYTHONPATH=build/release/python. --part 1 is drosophila-living with 6256 cells,
+0.5 has cells of twice the width; --elements are those of a cell of the target. Prints JSON: cells, runs, correlation of found and
+true factors, in all cells and in the ventral third, coverage of 90 % intervals, misfits (found; of the true factors, by mesh and
+steps), and seconds of processor time of the target, the inference and one run. DIR keeps target and search, so an interrupted
+inference continues; its seconds are those of the last session.
 """
 import argparse
 import json
@@ -60,13 +61,14 @@ def apical_shapes(scenario, factors, threads):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--part", type=float, default=0.5)
-    parser.add_argument("--elements", type=int, nargs=3, default=[2, 2, 2])
+    parser.add_argument("--elements", type=int, nargs=3, default=[1, 1, 3])
+    parser.add_argument("--model-elements", type=int, nargs=3, default=[1, 1, 2])
     parser.add_argument("--noise", type=float, default=0.02, help="of the root mean square displacement")
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--keep", type=Path)
     given = parser.parse_args()
 
-    model = embryo(given.part, [1, 1, 1], 0.05)
+    model = embryo(given.part, given.model_elements, 0.05)
     simulation = plica.Simulation(model)
     factors, is_ventral = hidden_factors(simulation)
     kept, target_s = given.keep and given.keep / "target.npz", 0.0

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Optional, Union
@@ -39,6 +40,8 @@ def read_targets(file: Union[str, os.PathLike[str]]) -> dict[str, Pairs]:
     for line, row in enumerate(rows, 2):
         minute = _number(row["at_min"], "at_min", path, line) if row.get("at_min") else None
         pair = (_number(row["value"], "value", path, line), _number(row["sd"], "sd", path, line))
+        if pair[1] <= 0:
+            raise FileError(f"{path}:{line}: sd: {pair[1]:g}; give a standard deviation above 0")
         name = row.get("scenario", "")
         if name and name not in _core.scenarios:
             name = str(path.parent / name)
@@ -53,9 +56,12 @@ def read_targets(file: Union[str, os.PathLike[str]]) -> dict[str, Pairs]:
 
 def _number(text: str, column: str, path: Path, line: int) -> float:
     try:
-        return float(text)
+        number = float(text)
     except ValueError:
-        raise FileError(f"{path}:{line}: {column}: {text!r}; give a number") from None
+        number = math.nan
+    if not math.isfinite(number):
+        raise FileError(f"{path}:{line}: {column}: {text!r}; give a number")
+    return number
 
 
 def write_scenario(fit: Fit, index: int, file: Path) -> None:

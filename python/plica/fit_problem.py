@@ -18,6 +18,7 @@ from .arguments import number_from, pair_of, pairs_of, text_of, told
 from .errors import FileError, NumericsError
 from .local_energy import LocalEnergy, laws_of, number_of
 from .scenario import Scenario
+from .simulation import Simulation
 from .tapes import Tape, record
 
 Array = NDArray[np.float64]
@@ -83,6 +84,7 @@ class Problem:
         self.priors = self._priors(pairs_of({} if priors is None else priors, "priors", "(value, sd)"))
         self.known: dict[tuple[float, ...], dict[str, Any]] = {}
         self.tapes: tuple[tuple[float, ...], list[Tape]] = ((), [])
+        self.has_slopes = False  # of all targets, at some place
         self.file: Optional[Path] = None
 
     def _first_place(self, scenario: Scenario, key: str, scale: Scale) -> float:
@@ -163,7 +165,12 @@ class Problem:
             values = self.values_at(place)
             by_place = np.array([(values[key] if scale.is_log else 1.0) / self._unit(key, values[key])
                                  for key, scale in zip(self.keys, self.scales)])
-            run["slopes"] = (np.concatenate(rows) * by_place).tolist()
+            slopes = np.concatenate(rows) * by_place
+            if until is None and not self.has_slopes and not slopes.any(axis=0).all():
+                key = self.keys[int(np.argmin(slopes.any(axis=0)))]
+                raise ValueError(f"of: {key} changes no target; fit another key, or give a target that it changes")
+            self.has_slopes = self.has_slopes or until is None
+            run["slopes"] = slopes.tolist()
             self._write(place, until)
         of_priors = np.zeros((len(self.priors), len(self.keys)))
         for row, (k, _, sd) in enumerate(self.priors):
@@ -210,9 +217,11 @@ class Problem:
     def keep_in(self, folder: Path) -> None:
         told_of: list[Any] = [
             version, self.keys, list(self.bounds.values()), self.priors,
-            [[one.scenario.to_toml(), [[name_of(row.outcome), *row[1:]] for row in one.rows]] for one in self.experiments]]
+            [[one.scenario.to_toml(), [[_print_of(row.outcome, one.scenario), *row[1:]] for row in one.rows]] for one in self.experiments]]
         for one, energy in self.energies.items():
-            formula = energy.energy if isinstance(energy.energy, str) else energy.energy.__name__
+            formula = energy.energy
+            if not isinstance(formula, str):
+                formula = _digest(energy(_moved(self.experiments[0].scenario)[energy.groups].reshape(len(energy.groups), -1), 1))
             numbers = {number: values.tolist() for number, values in energy.numbers.items()}
             told_of.append([one, formula, energy.groups.tolist(), numbers])
         name = hashlib.sha256(json.dumps(told_of).encode()).hexdigest()
@@ -221,14 +230,18 @@ class Problem:
             folder.mkdir(parents=True, exist_ok=True)
             lines = self.file.read_text(encoding="utf-8").splitlines() if self.file.exists() else []
             if not lines:
-                self.file.write_text(json.dumps({"fit": name}) + "\n", encoding="utf-8")
+                begun = self.file.with_suffix(".new")
+                begun.write_text(json.dumps({"fit": name}) + "\n", encoding="utf-8")
+                begun.replace(self.file)
         except OSError as error:
             raise FileError(f"{folder}: {error.strerror}") from error
         for number_of, line in enumerate(lines):
             try:
                 row = json.loads(line)
-            except ValueError:  # written when the fit was killed
-                continue
+            except ValueError:
+                if number_of == 0:
+                    raise FileError(f"{self.file}:1: cannot be read, so its fit is unknown; give another folder") from None
+                continue  # written when the fit was killed
             if number_of == 0 and row.get("fit") != name:
                 raise FileError(f"{folder}: holds another fit; give another folder")
             if number_of > 0:
@@ -285,6 +298,24 @@ def targets_until(experiment: Experiment, until: Optional[float]) -> list[Row]:
     if until is None:
         return experiment.rows
     return [row for row in experiment.rows if row.at_min is not None and row.at_min <= until]
+
+
+def _moved(scenario: Scenario) -> Array:
+    """Return positions of the start, each moved a little at random, where functions show what they compute."""
+    positions = Simulation(scenario).positions
+    return np.asarray(positions + np.random.default_rng(0).normal(scale=0.1, size=positions.shape))
+
+
+def _digest(values: Any) -> str:
+    return hashlib.sha256(np.ascontiguousarray(values, np.float64).tobytes()).hexdigest()
+
+
+def _print_of(outcome: Outcome, scenario: Scenario) -> Any:
+    """Return what tells an outcome from others: a function's name, value and gradient, which change when it is edited."""
+    if isinstance(outcome, str):
+        return outcome
+    value, gradient = outcome(_moved(scenario))
+    return [name_of(outcome), float(value), _digest(gradient)]
 
 
 def name_of(outcome: Outcome) -> str:

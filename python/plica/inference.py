@@ -228,6 +228,9 @@ def infer(
         raise ValueError("scenario: embryo.mirror makes cells of both sides equal, and their factors may differ; remove it")
     simulation = Simulation(own, threads=threads)
     laws = [simulation._label(law) for law in texts_of(of, "of")]
+    for law in laws:
+        if law.startswith("growth."):
+            raise ValueError(f"of: {law} grows at an absolute rate, and shapes are explained by ratios of forces; give contractions or cortices")
     if not laws or len(set(laws)) < len(laws):
         raise ValueError(f"of: {told(of)}; give one contraction or cortex, or several different ones")
     if knots_min is not None:

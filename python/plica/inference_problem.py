@@ -154,7 +154,7 @@ class Problem:
 
     def probe(self, tape: Tape, v: Array, times: int, rng: np.random.Generator) -> list[Array]:
         """Return the gradient by log factors of a sum of residuals with independent normal weights."""
-        return self.by_logs(tape, v, self.residuals.probe(self._positions(tape, times), rng))
+        return self.by_logs(tape, v, self.residuals.probe(self._positions(tape, times), rng), LINEAR_TOLERANCE)
 
     def curvature(self, tape: Tape, v: Array, times: int) -> Array:
         """Return the Gauss-Newton Hessian of half the misfit by log factors of acting cells of all laws."""

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 #include <utility>
 
 #include "core/clock.hpp"
@@ -192,11 +194,20 @@ std::unique_ptr<Model> Tape::solved_model(const StrengthFactors& change, double 
 }
 
 ModelPair Tape::parameter(std::string name, const Variant& more, const Variant& less, double difference) const {
-  for (const char* rule : {"division.", "exchange.", "extrusion."})
-    if (name.starts_with(rule))
-      throw NoGradient(name +
-                       ": has no gradient, since which cells divide or exchange neighbours, when and how, are "
-                       "constants of the recorded run; choose another key");
+  static constexpr std::string_view changes = "which cells divide or exchange neighbours, when and how, are";
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 7> constants{{
+      {"division.", changes},
+      {"exchange.", changes},
+      {"extrusion.", changes},
+      {"time.", "steps are"},
+      {"output.", "steps are"},
+      {"stop.", "steps are"},
+      {"self_contact.distance_um", "which surfaces are near each other, and how near, when they first touch, are"},
+  }};
+  for (const auto& [start, what] : constants)
+    if (name.starts_with(start))
+      throw NoGradient(
+          fmt::format("{}: has no gradient, since {} constants of the recorded run; choose another key", name, what));
   return model_pair(*solved_, std::move(name), solved_model(more), solved_model(less), difference);
 }
 

@@ -149,6 +149,8 @@ TABLES = [
     ("outcome,value,sd\na,1,1\na,x,1\n", ":3: value: 'x'; give a number"),
     ("outcome,value,sd\na,1,1\na,1,1\n", ":3: a: has two targets at one time"),
     ("outcome,value,sd\na,1\n", ":2: sd: ''; give a number"),
+    ("outcome,value,sd\na,nan,1\n", ":2: value: 'nan'; give a number"),
+    ("outcome,value,sd\na,1,0\n", ":2: sd: 0; give a standard deviation above 0"),
 ]
 
 

@@ -214,6 +214,20 @@ def test_a_killed_fit_continues(exact, tmp_path, monkeypatch):
         assert json.loads(line)["found"] is not None
     with pytest.raises(plica.FileError, match="holds another fit"):
         plica.fit(block(), exact, of={APICAL: (0.5, 8)}, folder=tmp_path)
+    file.write_text("\n".join([lines[0][:20], *lines[1:]]) + "\n")
+    with pytest.raises(plica.FileError, match="runs.jsonl:1: cannot be read, so its fit is unknown; give another folder"):
+        plica.fit(block(), exact, of=KEYS, folder=tmp_path)
+
+
+def test_an_edited_function_is_another_fit(exact, tmp_path):
+    def fit(part):
+        def height(positions):
+            return part * positions[:, 2].mean(), np.full(positions.shape, [0, 0, part / len(positions)])
+        return plica.fit(block(), {**exact, height: (5, 1)}, of={APICAL: (0.5, 8)}, folder=tmp_path)
+
+    assert fit(1).values == fit(1).values
+    with pytest.raises(plica.FileError, match="holds another fit"):
+        fit(2)
 
 
 def test_bounds_hold(exact):
@@ -254,6 +268,8 @@ WRONG = [
     (dict(of={APICAL: (8, 3)}), "give finite bounds, the lower one first"),
     (dict(of={"cortex.apical.region": (1, 2)}), "of: cortex.apical.region is 'all'; choose keys that have a number"),
     (dict(of={"embryo.length_um": (50, 70)}), "embryo.length_um: has no gradient"),
+    (dict(of={"self_contact.stiffness_kPa_per_um": (0.5, 2)}), "of: self_contact.stiffness_kPa_per_um changes no target; fit another key"),
+    (dict(of={"time.tolerance_um": (0.01, 0.1)}), "time.tolerance_um: has no gradient, since steps are constants of the recorded run"),
     (dict(priors={YOUNG: (1, 1)}), f"priors: {YOUNG} is not fitted; keys: {APICAL}"),
     (dict(priors={APICAL: (1, -1)}), "give (value, sd), both above 0"),
     (dict(early_min=0.01), "early_min: 0.01; give a time at or after the first target"),

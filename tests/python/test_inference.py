@@ -357,6 +357,7 @@ WRONG = [
     (dict(shapes={2: np.zeros((50, 3))}), "shapes: 2 min is after the end of the run, 1 min"),
     (dict(of="cortex.apica"), 'cortex.apica'),
     (dict(of=["apical", LAW]), "give one contraction or cortex, or several different ones"),
+    (dict(of="growth.none"), "of: growth.none grows at an absolute rate"),
     (dict(knots_min=[1]), "knots_min: 1; give two or more increasing times"),
     (dict(knots_min=[1, 0.5]), "knots_min: 1, 0.5; give two or more increasing times"),
     (dict(knots_min=[-1, 0.5]), "knots_min: -1; give times in minutes"),

@@ -359,7 +359,8 @@ TEST(Tape, RefusesWhatHasNoDerivativesByName) {
             "inertia: this law has no derivatives yet; remove it from the scenario");
   EXPECT_EQ(refused({"cortex.top={region=\"all\",tension_mN_per_m=1}",
                      "cortex.top.trigger={measure=\"height_ratio\",above=2}"}),
-            "cortex.top: a jump at a time given by a trigger has no derivative; begin its program at 0, without jumps");
+            "cortex.top: a jump at a time given by a trigger has no derivative; let its program rise from activity 0, "
+            "or start at a given time");
   const Scenario scenario = load_scenario(pulled_block());
   const Tape tape(scenario, {.until_s = 1});
   EXPECT_THROW(

@@ -16,7 +16,9 @@ const LawDerivatives& Cortex::derivatives() const {
   const bool jumps = (rule_.tension != 0 && rule_.program.at(0) != 0) || !rule_.program.jumps_s().empty() ||
                      !rule_.stiffness_program.jumps_s().empty();
   if (activation_.starts() && jumps)
-    refuse_gradient("a jump at a time given by a trigger has no derivative; begin its program at 0, without jumps");
+    refuse_gradient(
+        "a jump at a time given by a trigger has no derivative; let its program rise from activity 0, or start at a "
+        "given time");
   return *this;
 }
 

@@ -69,7 +69,7 @@ TEST(CortexDerivatives, RefusesDerivativesWhereAForceJumpsAtATriggersTime) {
     return error_of<NoGradient>([&] { return &Cortex(tissue, every_cell, rule).derivatives(); });
   };
   EXPECT_EQ(refused(Program({0, 1}, {0, 1}), {}), "");
-  EXPECT_SAYS(refused({}, {}), "begin its program at 0, without jumps");
+  EXPECT_SAYS(refused({}, {}), "let its program rise from activity 0, or start at a given time");
   EXPECT_SAYS(refused(Program({0, 1, 1}, {0, 1, 0}), {}), "cortex: a jump");
   EXPECT_SAYS(refused(Program({0, 1}, {0, 1}), Program({1, 1}, {1, 0})), "cortex: a jump");
 }
