@@ -51,7 +51,7 @@ class Search:
         self.weight = 1.0  # of the misfit; below 1 where it exceeds the noise
         self.times = 0
         self.is_large = len(self.v) > MOST_WHOLE
-        self.converged = self._is_slow = False
+        self.converged = self._is_slow = self._is_limited = False
 
     def begin(self, times: int) -> None:
         """Compare the first targets, from the present point."""
@@ -113,6 +113,7 @@ class Search:
         gradient, value, direction = self.gradient, self.value(self.v, self.misfits), self.direction
         largest = max(np.abs(log).max() for log in self.problem.logs(direction))
         length = min(1.0, LARGEST_CHANGE / largest)
+        self._is_limited = length < 1
         downhill = float(gradient @ direction)
         for _ in range(6):
             v = self.v + length * direction
@@ -228,7 +229,8 @@ class Search:
                     continue
                 adapted = 0
                 slow, after = (SLOW, SLOW_AFTER) if times == last else (SLOW_EARLY, 1)
-                self._is_slow = (self.is_large or len(self.steps) > after) and self.value(self.v, self.misfits) > (1 - slow) * value
+                self._is_slow = (not self._is_limited and (self.is_large or len(self.steps) > after)
+                                 and self.value(self.v, self.misfits) > (1 - slow) * value)
                 after_step()
 
     def curvatures(self) -> list[tuple[slice, Array]]:
