@@ -168,6 +168,13 @@ void bind_tapes(nb::module_& module) {
             return array_of(std::vector<int>(nodes.begin(), nodes.end()));
           },
           nb::arg("side"))
+      .def_prop_ro("originals",
+                   [](const TapeOf& self) {
+                     std::vector<int> originals;
+                     for (std::size_t cell = 0; cell < self.tape().tissue().cells.size(); ++cell)
+                       originals.push_back(self.tape().mirror().original(CellId(cell)).number());
+                     return array_of(originals);
+                   })
       .def_prop_ro("cell_count", [](const TapeOf& self) { return self.tape().tissue().cells.size(); })
       .def_prop_ro("changes", [](const TapeOf& self) { return self.tape().changes(); })
       .def_prop_ro("times_s", [](const TapeOf& self) { return array_of(self.tape().times_s()); });

@@ -472,7 +472,9 @@ def check_gradient(
     law = text_of(of, "of")
     at = np.array(tape._strengths.get(law, np.ones(len(slopes))))
     largest = int(np.argmax(np.abs(slopes)))
-    directions = {"a random direction": np.random.default_rng(0).uniform(0, 1, len(slopes)), f"cell {largest}": np.eye(len(slopes))[largest]}
+    originals = tape._core.originals  # with embryo.mirror, cells change with their images
+    directions = {"a random direction": np.random.default_rng(0).uniform(0, 1, len(slopes))[originals],
+                  f"cell {largest}": (originals == originals[largest]).astype(float)}
 
     def along(direction: Array, part: float) -> float:
         return value({**tape._strengths, law: (at + part * direction).tolist()}, tape._scenario, tape._energies)

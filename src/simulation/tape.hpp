@@ -108,6 +108,8 @@ class Tape {
   /// Repeat the same steps with tight tolerances, for a changed run or other strengths: an oracle of gradients.
   [[nodiscard]] Tape replayed(const Variant& changed, const StrengthFactors& strengths) const;
   [[nodiscard]] const Scenario& scenario() const { return *scenario_; }
+  /// Return the mirror of the whole embryo to the solved side; not used if all is solved.
+  [[nodiscard]] const Mirror& mirror() const { return mirror_; }
   [[nodiscard]] const StrengthFactors& strengths() const { return strengths_; }
 
  private:

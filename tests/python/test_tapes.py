@@ -110,6 +110,14 @@ def test_a_check_warns_of_a_tolerance_too_coarse_for_slopes():
         assert np.isnan(check.finer)
 
 
+def test_a_check_changes_cells_with_their_images():
+    scenario = plica.Scenario("furrow-slice")
+    scenario["embryo.mirror"] = ["y"]
+    tape = plica.record(scenario, until_min=2)
+    checks = plica.check_gradient(tape, "furrow_depth_um", of="cortex.apical", by="cell")
+    assert max(check.error for check in checks) < 1e-5
+
+
 def test_a_function_of_several_times(tape):
     first, last = tape.positions(0.5), tape.positions(1)
     loss = tape.distance_to(np.stack([first + 0.1, last - 0.2]), surface="all")
