@@ -314,8 +314,11 @@ def _print_of(outcome: Outcome, scenario: Scenario) -> Any:
     """Return what tells an outcome from others: a function's name, value and gradient, which change when it is edited."""
     if isinstance(outcome, str):
         return outcome
-    value, gradient = outcome(_moved(scenario))
-    return [name_of(outcome), float(value), _digest(gradient)]
+    try:
+        value, gradient = outcome(_moved(scenario))
+        return [name_of(outcome), float(value), _digest(gradient)]
+    except (IndexError, TypeError, ValueError):  # made for a later number of nodes, or told as wrong by the first run
+        return name_of(outcome)
 
 
 def name_of(outcome: Outcome) -> str:

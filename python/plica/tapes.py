@@ -487,7 +487,7 @@ def check_gradient(
 def _compared_with_finer(tape: Tape, checks: list[GradientCheck], directions: list[Array], outcome: Any, of: Any, by: Optional[str],
                          at_min: Union[None, float, Iterable[float]]) -> list[GradientCheck]:
     """Add derivatives along directions of a run in finer steps. Warns if one differs, or one from its difference."""
-    wrong = [check for check in checks if check.error > max(WRONG, 2 * check.uncertainty)]
+    wrong = [check for check in checks if check.error > WRONG and check.error > 2 * check.uncertainty]  # not of one change
     if wrong:
         worst = max(wrong, key=lambda check: check.error)
         warnings.warn(f"check_gradient: the derivative by {worst.of} is {worst.gradient:.4g}, but runs differ by {worst.difference:.4g}; do "

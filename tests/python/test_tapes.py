@@ -110,6 +110,13 @@ def test_a_check_warns_of_a_tolerance_too_coarse_for_slopes():
         assert np.isnan(check.finer)
 
 
+def test_a_check_warns_of_a_wrong_derivative(tape):
+    with pytest.warns(UserWarning, match="the derivative by elasticity.young_modulus_Pa is .*, but runs differ by .*; do not use it"):
+        plica.check_gradient(tape, lambda x: ((x**2).sum(), 3 * x), of="elasticity.young_modulus_Pa")
+    with pytest.raises(ValueError, match="target: .*; give positions of all nodes, of shape"):
+        tape.distance_to(np.ones((3, 3)))
+
+
 def test_a_check_changes_cells_with_their_images():
     scenario = plica.Scenario("furrow-slice")
     scenario["embryo.mirror"] = ["y"]
