@@ -28,6 +28,7 @@ GOOD = 1e-6  # relative agreement that needs no further change
 FINER = 4  # division of time.tolerance_um by which check_gradient compares
 COARSE = 0.05  # relative difference from there at which it warns
 WRONG = 1e-3  # relative error at which it warns, if the difference is surer than that
+SNAP_PART = 0.1  # of the run: within this time a snap doubles, and halves, the dependence on a key
 
 
 def record(
@@ -383,6 +384,9 @@ class GradientCheck:
     finer : float
         The derivative of a run with a quarter of ``time.tolerance_um``; NaN if steps are given, or cells divide or exchange
         neighbours.
+    snap_min : float
+        When the shape snaps: its dependence on the key rises and falls at least twofold within a tenth of the run. NaN if it does not.
+        From shortly before, outcomes are strongly curved, and the slope holds for small changes only.
     """
 
     of: str
@@ -391,6 +395,7 @@ class GradientCheck:
     change: float
     uncertainty: float
     finer: float = math.nan
+    snap_min: float = math.nan
 
     @property
     def error(self) -> float:
@@ -399,7 +404,8 @@ class GradientCheck:
     def __repr__(self) -> str:
         doubt = "" if math.isnan(self.uncertainty) else f" ± {self.uncertainty:.1e}"
         return (f"GradientCheck({self.of}: {self.gradient:.9g}, difference {self.difference:.9g} by changes of {self.change:.0e}, "
-                f"error {self.error:.1e}{doubt}" + ("" if math.isnan(self.finer) else f", by finer steps {self.finer:.4g}") + ")")
+                f"error {self.error:.1e}{doubt}" + ("" if math.isnan(self.finer) else f", by finer steps {self.finer:.4g}")
+                + ("" if math.isnan(self.snap_min) else f", snap at {self.snap_min:.3g} min") + ")")
 
 
 def check_gradient(
@@ -458,16 +464,22 @@ def check_gradient(
     base = tape._replayed(tape._scenario, tape._strengths, tape._energies)
     slopes = np.atleast_1d(base.gradient(outcome, of=of, by=by, at_min=at_min, tolerance=1e-11))
 
-    def value(strengths: dict[str, list[float]], scenario: Scenario, energies: dict[str, LocalEnergy]) -> float:
-        return tape._replayed(scenario, strengths, energies).value(outcome, at_min=at_min)
+    def differences(run_with: Callable[[float], Tape], unit: float) -> Callable[[float], tuple[float, float]]:
+        def at(part: float) -> tuple[float, float]:
+            more, less = run_with(part), run_with(-part)
+            difference = (more.value(outcome, at_min=at_min) - less.value(outcome, at_min=at_min)) / (2 * part * unit)
+            return difference, _snap_min(more, less)
+        return at
 
     if by is None:
         keys = [of] if isinstance(of, str) else texts_of(of, "of")
 
-        def by_key(key: str, part: float) -> float:
-            return value(tape._strengths, *base._changed(key, part))
+        def by_key(key: str, part: float) -> Tape:
+            scenario, energies = base._changed(key, part)
+            return tape._replayed(scenario, tape._strengths, energies)
 
-        checks = [_checked(key, float(slope), changes, partial(by_key, key), base._value(key)) for key, slope in zip(keys, slopes)]
+        checks = [_checked(key, float(slope), changes, differences(partial(by_key, key), base._value(key)))
+                  for key, slope in zip(keys, slopes)]
         return _compared_with_finer(tape, checks, list(np.eye(len(keys))), outcome, of, by, at_min)
     law = text_of(of, "of")
     at = np.array(tape._strengths.get(law, np.ones(len(slopes))))
@@ -476,12 +488,23 @@ def check_gradient(
     directions = {"a random direction": np.random.default_rng(0).uniform(0, 1, len(slopes))[originals],
                   f"cell {largest}": (originals == originals[largest]).astype(float)}
 
-    def along(direction: Array, part: float) -> float:
-        return value({**tape._strengths, law: (at + part * direction).tolist()}, tape._scenario, tape._energies)
+    def along(direction: Array, part: float) -> Tape:
+        return tape._replayed(tape._scenario, {**tape._strengths, law: (at + part * direction).tolist()}, tape._energies)
 
-    checks = [_checked(f"{law}, {name}", float(direction @ slopes), changes, partial(along, direction), 1.0)
+    checks = [_checked(f"{law}, {name}", float(direction @ slopes), changes, differences(partial(along, direction), 1.0))
               for name, direction in directions.items()]
     return _compared_with_finer(tape, checks, list(directions.values()), outcome, of, by, at_min)
+
+
+def _snap_min(more: Tape, less: Tape) -> float:
+    """Return when the difference of two runs through the same steps is largest, if it rises and falls fast there; else NaN."""
+    times = more.times_min
+    apart = np.array([np.sqrt(np.mean((more._core.positions(state) - less._core.positions(state)) ** 2)) for state in range(len(times))])
+    peak, window = int(apart.argmax()), SNAP_PART * times[-1]
+    before = apart[(times >= times[peak] - window) & (times <= times[peak])]
+    after = apart[(times >= times[peak]) & (times <= times[peak] + window)]
+    is_snap = times[peak] > window and max(before.min(), after.min()) <= apart[peak] / 2
+    return float(times[peak]) if is_snap else math.nan
 
 
 def _compared_with_finer(tape: Tape, checks: list[GradientCheck], directions: list[Array], outcome: Any, of: Any, by: Optional[str],
@@ -510,13 +533,15 @@ def _compared_with_finer(tape: Tape, checks: list[GradientCheck], directions: li
     return found
 
 
-def _checked(of: str, slope: float, changes: Iterable[float], value_at: Callable[[float], float], unit: float) -> GradientCheck:
+def _checked(of: str, slope: float, changes: Iterable[float],
+             difference_at: Callable[[float], tuple[float, float]]) -> GradientCheck:
     """Compare a derivative with differences of smaller and smaller changes, until one agrees or two differences do."""
     best: Optional[GradientCheck] = None
     last = math.nan
     for part in changes:
-        difference = (value_at(part) - value_at(-part)) / (2 * part * unit)
-        found = GradientCheck(of, slope, difference, part, abs(difference - last) / max(abs(difference), np.finfo(float).tiny))
+        difference, snap_min = difference_at(part)
+        doubt = abs(difference - last) / max(abs(difference), np.finfo(float).tiny)
+        found = GradientCheck(of, slope, difference, part, doubt, snap_min=snap_min)
         if best is None or math.isnan(best.uncertainty) or found.uncertainty < best.uncertainty:
             best = found
         if found.error < GOOD or found.uncertainty < GOOD:

@@ -149,10 +149,13 @@ SmoothOutcome smooth_outcome(const std::string& name, const Model& model, const 
     if (name == monitor.column()) return of_monitor(monitor, model, positions);
     names.push_back(monitor.column());
   }
+  const bool is_column = std::ranges::any_of(columns(), [&](const Column& column) { return column.name == name; }) ||
+                         std::ranges::any_of(plan.monitors, [&](const Monitor& m) { return m.column() == name; });
   throw UsageError(
-      fmt::format("outcome \"{}\": has no gradient here; those that have: {}; add a monitor of area, "
-                  "area_ratio, volume, position or displacement over mean, sum or rms",
-                  name, names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+      fmt::format("outcome \"{}\": {}; those with a gradient: {}; add a monitor of area, area_ratio, volume, position "
+                  "or displacement over mean, sum or rms",
+                  name, is_column ? "has no gradient" : "is no output variable",
+                  names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
 }
 
 }  // namespace plica

@@ -73,9 +73,10 @@ TEST(SmoothOutcome, OthersAreNamed) {
     (void)smooth_outcome("end.position_um", *parts.model, parts.measure_plan, parts.model->tissue.rest_positions);
     FAIL();
   } catch (const UsageError& error) {
-    EXPECT_STREQ(error.what(),
-                 "outcome \"end.position_um\": has no gradient here; those that have: all.volume_um3; add a monitor of "
-                 "area, area_ratio, volume, position or displacement over mean, sum or rms");
+    EXPECT_STREQ(
+        error.what(),
+        "outcome \"end.position_um\": has no gradient; those with a gradient: all.volume_um3; add a monitor of "
+        "area, area_ratio, volume, position or displacement over mean, sum or rms");
   }
 }
 

@@ -119,7 +119,7 @@ def test_posterior_by_gradients():
 
 
 def test_posteriors_by_gradients_that_are_none():
-    with pytest.raises(ValueError, match="has no gradient here; those that have"):
+    with pytest.raises(ValueError, match="has no gradient; those with a gradient"):
         plica.posterior(plica.Scenario(BLOCK), {YOUNG: (400, 1200)}, {"max_volume_error": (0, 1)}, on="gradients")
     with pytest.raises(ValueError, match="give a scenario instead of a study"):
         plica.posterior(linear(32), targets=TARGETS, on="gradients")

@@ -82,7 +82,7 @@ def test_outcomes_of_the_furrow_agree_with_differences():
     (1, lambda part: part + 1e-2 * np.sign(part), 1e-4, 1, 1),                # a jump: no difference agrees with another
 ])
 def test_a_check_finds_the_change_that_an_outcome_allows(slope, value_at, change, error, uncertainty):
-    check = _checked("key", slope, CHECK_CHANGES, value_at, 1.0)
+    check = _checked("key", slope, CHECK_CHANGES, lambda part: ((value_at(part) - value_at(-part)) / (2 * part), np.nan))
     assert check.change == change or uncertainty == 1
     assert 0.5 * error < check.error <= error or error < 1e-5 and check.error <= error
     assert np.isnan(uncertainty) and np.isnan(check.uncertainty) or 0.4 * uncertainty < check.uncertainty <= uncertainty
@@ -99,12 +99,13 @@ def test_a_check_warns_of_a_tolerance_too_coarse_for_slopes():
     scenario["time.tolerance_um"] = 0.025
     finer = plica.record(scenario)
     assert check.finer == pytest.approx(finer.gradient("furrow_depth_um", of=key), rel=1e-6)
+    assert 14 < check.snap_min < 15 and "snap at 14." in repr(check)  # the lips meet
     # As coarse, before contact: no warning. Given steps have no tolerance.
     block = plica.Scenario(BLOCK)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         [check] = plica.check_gradient(plica.record(block), "top.area_um2", of=key)
-        assert check.finer == pytest.approx(check.gradient, rel=0.05)
+        assert check.finer == pytest.approx(check.gradient, rel=0.05) and np.isnan(check.snap_min)
         block["time.step_s"] = 5
         [check] = plica.check_gradient(plica.record(block), "top.area_um2", of=key)
         assert np.isnan(check.finer)
@@ -123,6 +124,22 @@ def test_a_check_changes_cells_with_their_images():
     tape = plica.record(scenario, until_min=2)
     checks = plica.check_gradient(tape, "furrow_depth_um", of="cortex.apical", by="cell")
     assert max(check.error for check in checks) < 1e-5
+
+
+@pytest.mark.parametrize("name, changes, keys", [
+    ("drosophila", {}, ["contraction.apical.stiffness_nN_per_um"]),
+    ("furrow-slice", {"embryo.mirror": ["y"]}, ["cortex.apical.tension_mN_per_m", "elasticity.young_modulus_Pa"]),
+    ("drosophila-egg", {"embryo.cell_count": 300}, []),
+    ("wing-disc", {"embryo.cell_count": 200}, []),
+    ("growing-disc", {"embryo.cell_count": 60}, []),
+    ("convergent-extension", {"embryo.cell_count": 20}, ["elasticity.relaxation_s", "cortex.lateral.noise.spread"]),
+])
+def test_gradients_of_built_in_scenarios_agree_with_differences(name, changes, keys):
+    scenario = plica.Scenario(name)
+    scenario.update(changes)
+    tape = plica.record(scenario, until_min=1)
+    for check in plica.check_gradient(tape, moved(tape), of=["dynamics.surface_drag_Pa_s_per_um", *keys]):
+        assert check.error < 1e-5, check
 
 
 def test_a_function_of_several_times(tape):
@@ -292,7 +309,7 @@ def test_gradients_by_cell_through_division():
 
 
 WRONG = [
-    (dict(outcome="smallest.area_um2", of="elasticity.young_modulus_Pa"), "has no gradient here; those that have: moved.displacement_um, ratio.area_ratio, side.position_um, top.area_um2;"),
+    (dict(outcome="smallest.area_um2", of="elasticity.young_modulus_Pa"), "has no gradient; those with a gradient: moved.displacement_um, ratio.area_ratio, side.position_um, top.area_um2;"),
     (dict(outcome="top.area_um2", of="embryo.length_um"), "embryo.length_um: has no gradient, since it changes the tissue"),
     (dict(outcome="top.area_um2", of="elasticity.young"), "of: elasticity.young: has no value in this scenario; nearest matches: elasticity.model, elasticity.young_modulus_Pa"),
     (dict(outcome="top.area_um2", of="self_contact.distance_um"), "self_contact.distance_um: has no gradient, since which surfaces"),

@@ -55,16 +55,17 @@ Work work_over(const Law& law, const Tissue& tissue, double size) {
   return {work, flow.active - flow.stored - flow.dissipated};
 }
 
+}  // namespace
+
 bool has_derivatives(const Law& law) {
   try {
     (void)law.derivatives();
     return true;
-  } catch (const NoGradient&) {
+  } catch (const NoGradient& refusal) {
+    EXPECT_TRUE(std::string(refusal.what()).starts_with(law.label() + ": ")) << refusal.what();
     return false;
   }
 }
-
-}  // namespace
 
 DenseTangent::DenseTangent(const Law& law, const Step& step)
     : matrix(Eigen::MatrixXd::Zero(size_of(step), size_of(step))) {
@@ -149,7 +150,7 @@ void check_derivatives(const Law& law, const Tissue& tissue, double size_um, int
 }
 
 void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um, const std::vector<double>& internal,
-                           double tolerance) {
+                           double tolerance, bool with_memory) {
   const LawDerivatives& derivatives = law.derivatives();
   const std::size_t nodes = tissue.node_count();
   for (const unsigned seed : {2U, 3U}) {  // of both orders
@@ -190,24 +191,25 @@ void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um,
       return sum;
     };
 
-    const double scale = std::max(1e-3, largest(forces_of(law, motion.step())));
+    const double of_forces = difference([&](double by) { return along(law, changed(by, false)); });
+    const double scale = std::max({1e-3, largest(forces_of(law, motion.step())), std::abs(of_forces)});
     derivatives.add_force_gradient(motion.step(), adjoint, cleared());
-    EXPECT_NEAR(along_change(), difference([&](double by) { return along(law, changed(by, false)); }),
-                tolerance * scale)
-        << law.name() << ", seed " << seed;
-    const BeginningGradient gradient = cleared();
-    const std::vector<double> next_internal = law.next_internal(motion.step());
-    const std::vector<double> like = derivatives.next_internal_like(law, motion.step(), next_internal);
-    EXPECT_TRUE(like.empty() || like == next_internal) << law.name();
-    derivatives.add_internal_gradient(motion.step(), next_internal, of_next, positions, gradient);
-    const auto next = [&](double by) {
-      const Motion m = changed(by, true);
-      const std::vector<double> numbers = law.next_internal(m.step());
-      return std::inner_product(numbers.begin(), numbers.end(), of_next.begin(), 0.0);
-    };
-    const double by_difference = difference(next);
-    EXPECT_NEAR(along_change(), by_difference, tolerance * std::max(1.0, std::abs(by_difference)))
-        << law.name() << ", seed " << seed;
+    EXPECT_NEAR(along_change(), of_forces, tolerance * scale) << law.name() << ", seed " << seed;
+    if (with_memory) {
+      const BeginningGradient gradient = cleared();
+      const std::vector<double> next_internal = law.next_internal(motion.step());
+      const std::vector<double> like = derivatives.next_internal_like(law, motion.step(), next_internal);
+      EXPECT_TRUE(like.empty() || like == next_internal) << law.name();
+      derivatives.add_internal_gradient(motion.step(), next_internal, of_next, positions, gradient);
+      const auto next = [&](double by) {
+        const Motion m = changed(by, true);
+        const std::vector<double> numbers = law.next_internal(m.step());
+        return std::inner_product(numbers.begin(), numbers.end(), of_next.begin(), 0.0);
+      };
+      const double by_difference = difference(next);
+      EXPECT_NEAR(along_change(), by_difference, tolerance * std::max(1.0, std::abs(by_difference)))
+          << law.name() << ", seed " << seed;
+    }
 
     const std::size_t cells = tissue.cells.size();
     const std::vector<double> ones(cells, 1.0);
@@ -215,7 +217,7 @@ void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um,
     if (!derivatives.with_strengths(ones)) continue;
     std::vector<double> of_cells(cells, 0.0);
     derivatives.add_strength_gradient(motion.step(), adjoint, of_cells);
-    for (std::size_t c = 0; c < cells; ++c) {
+    for (std::size_t c = 0; c < cells; c += 1 + cells / 20) {
       const auto with_factor = [&](double by) {
         std::vector<double> factors = ones;
         factors[c] += by;

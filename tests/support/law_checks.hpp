@@ -31,10 +31,14 @@ void expect_assembled_is_matrix_free(const Law& law, const Motion& motion, unsig
 /// refuse gradients, check_law_derivatives too.
 void check_derivatives(const Law& law, const Tissue& tissue, double size_um, int cases = 3, double tolerance = 1e-6);
 
-/// Derivatives of forces and of the internal state by what a step begins with, and by strengths of cells if it has any,
-/// at random large motions of second order; `internal`: the state at its beginning, whose numbers -1 are marks.
+/// Whether a law has derivatives for gradients of runs, instead of refusing with its name.
+bool has_derivatives(const Law& law);
+
+/// Derivatives of forces and of the internal state by what a step begins with, and by strengths of (some) cells if it
+/// has any, at random large motions of both orders; `internal`: the state at its beginning, whose numbers -1 are marks.
+/// Without `with_memory`, those of the internal state are left out.
 void check_law_derivatives(const Law& law, const Tissue& tissue, double size_um, const std::vector<double>& internal,
-                           double tolerance = 1e-7);
+                           double tolerance = 1e-7, bool with_memory = true);
 
 /// The semidefinite tangent at random large deformations: both forms of it are one, it is symmetric, no direction has
 /// negative stiffness, and forces do not change. `exact_is_indefinite`: whether some of these motions need it.
