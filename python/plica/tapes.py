@@ -175,9 +175,11 @@ class Tape:
         Parameters
         ----------
         outcome : str, callable or array_like of float
-            Output variable: ``"furrow_depth_um"``, ``"vml_apical_area_ratio"``, ``"enclosed_volume_ratio"``, or the column of a
-            monitor of areas, volumes, positions or displacements. Or a function of positions, of shape (nodes, 3), that returns its
-            value and its gradient, of the same shape; or the gradient alone. With several times, positions and gradient have shape
+            Output variable: ``"furrow_depth_um"``, ``"lip_distance_um"``, ``"mean_height_um"``, ``"vml_height_um"``,
+            ``"vml_apical_area_ratio"``, ``"vce_apical_area_ratio"``, ``"enclosed_volume_ratio"``, ``"lumen_volume_ratio"``, or the
+            column of a monitor of areas, volumes, depths, positions, displacements or distances; an extremum has the gradient of the
+            node or cell that has it. Or a function of positions, of shape (nodes, 3), that returns its value and its gradient, of
+            the same shape; or the gradient alone. With several times, positions and gradient have shape
             (times, nodes, 3).
         of : str or iterable of str
             Key of the scenario with a number (``"cortex.apical.tension_mN_per_m"``), or number of a `LocalEnergy`

@@ -59,29 +59,41 @@ std::optional<double> curvature_per_um(const Tissue& tissue, CellSide side, cons
   return -(p * p * d + 2 * p * q * e + q * q * f) / ((1 + std::pow(p * b + q * c, 2)) * std::sqrt(steepness));
 }
 
-std::vector<double> depths_below_border_um(const Tissue& tissue, const CellSet& region, std::span<const CellId> cells,
-                                           std::span<const Vec3> positions) {
+CellsAround cells_around_region(const Tissue& tissue, const CellSet& region, std::span<const CellId> cells) {
   const CellSet around = cells_around(tissue, region, 1);
-  Vectors rest, now;
+  CellsAround result;
+  Vectors places;
   for (std::size_t c = 0; c < around.size(); ++c) {
     if (!around[c]) continue;
-    rest.push_back(mean_apical(tissue.cells[c], tissue.rest_positions));
-    now.push_back(mean_apical(tissue.cells[c], positions));
+    result.cells.emplace_back(c);
+    places.push_back(mean_apical(tissue.cells[c], tissue.rest_positions));
   }
-  if (rest.empty()) return {};
+  for (const CellId cell : cells) {
+    const Vec3 at_rest = mean_apical(tissue.cells[cell.index()], tissue.rest_positions);
+    std::vector<double>& weights = result.weights.emplace_back();
+    double sum = 0;
+    for (const Vec3& place : places) sum += weights.emplace_back(1 / std::pow((place - at_rest).squaredNorm(), 2));
+    for (double& weight : weights) weight /= sum;
+  }
+  return result;
+}
+
+std::vector<double> depths_below_border_um(const Tissue& tissue, const CellSet& region, std::span<const CellId> cells,
+                                           std::span<const Vec3> positions) {
+  const CellsAround around = cells_around_region(tissue, region, cells);
+  if (around.cells.empty()) return {};
+  const auto moved = [&](CellId id) {
+    const Cell& cell = tissue.cells[id.index()];
+    return Vec3(mean_apical(cell, positions) - mean_apical(cell, tissue.rest_positions));
+  };
+  Vectors risen;
+  for (const CellId cell : around.cells) risen.push_back(moved(cell));
   const std::vector<Vec3> normals = rest_apical_normals(tissue, cells);
   std::vector<double> depths;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const Cell& cell = tissue.cells[cells[i].index()];
-    const Vec3 at_rest = mean_apical(cell, tissue.rest_positions);
-    Vec3 risen = Vec3::Zero();  // of the cells around
-    double weights = 0;
-    for (std::size_t k = 0; k < rest.size(); ++k) {
-      const double weight = 1 / std::pow((rest[k] - at_rest).squaredNorm(), 2);
-      risen += weight * (now[k] - rest[k]);
-      weights += weight;
-    }
-    depths.push_back(normals[i].dot(risen / weights - (mean_apical(cell, positions) - at_rest)));
+    Vec3 below = -moved(cells[i]);
+    for (std::size_t k = 0; k < risen.size(); ++k) below += around.weights[i][k] * risen[k];
+    depths.push_back(normals[i].dot(below));
   }
   return depths;
 }

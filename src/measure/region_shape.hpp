@@ -15,9 +15,16 @@ namespace plica {
 std::optional<double> curvature_per_um(const Tissue& tissue, CellSide side, const CellSet& region,
                                        std::optional<int> axis, std::span<const Vec3> positions);
 
+/// Cells around a region, and their weights for each of some cells of it: 1/d^4 of their reference distance d, over the
+/// sum, so that those nearest across a furrow count.
+struct CellsAround {
+  std::vector<CellId> cells;
+  std::vector<std::vector<double>> weights;
+};
+CellsAround cells_around_region(const Tissue& tissue, const CellSet& region, std::span<const CellId> cells);
+
 /// Depths of the apical surfaces of cells of a region below those of the cells around it, along their reference
-/// normals, um, minus the reference values. Cells around count by 1/d^4 of their reference distance d, so that those
-/// nearest across a furrow count. Empty if there are none.
+/// normals, um, minus the reference values. Empty if there are none around.
 std::vector<double> depths_below_border_um(const Tissue& tissue, const CellSet& region, std::span<const CellId> cells,
                                            std::span<const Vec3> positions);
 

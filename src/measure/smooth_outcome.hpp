@@ -13,8 +13,9 @@ struct SmoothOutcome {
 };
 
 /// Return an output variable at given positions with its gradient: furrow_depth_um (that of the deepest point),
-/// vml_apical_area_ratio, enclosed_volume_ratio, or a monitor of positions, displacements, areas or volumes, over mean,
-/// sum or rms. UsageError, with the existing names, for others.
+/// apical area ratios, heights, distance of the lips, enclosed and lumen volume ratios, or a monitor of positions,
+/// displacements, distances, depths, areas or volumes; of an extremum that of the node or cell which has it.
+/// UsageError, with the existing names, for others.
 SmoothOutcome smooth_outcome(const std::string& name, const Model& model, const MeasurePlan& plan,
                              const Vectors& positions);
 

@@ -139,12 +139,12 @@ def test_wrong_keys_of_posteriors_by_gradients_are_told(key, message):
 def test_remedies_of_a_target_without_a_gradient_help():
     """The emulator, and another monitor."""
     pytest.importorskip("sklearn")
-    smallest = {**BLOCK, "monitor": {"top": {"quantity": "area", "over": "min"}}}
+    without = {**BLOCK, "monitor": {"top": {"quantity": "apical_elongation"}}}
     with pytest.raises(ValueError) as raised:
-        plica.posterior(plica.Scenario(smallest), {YOUNG: (400, 1200)}, {"top.area_um2": (390, 20)}, on="gradients")
-    assert str(raised.value).endswith('mean, sum or rms, or give on="emulator"') and "function" not in str(raised.value)
+        plica.posterior(plica.Scenario(without), {YOUNG: (400, 1200)}, {"top.apical_elongation": (1.05, 0.1)}, on="gradients")
+    assert str(raised.value).endswith('or surface_distance, or give on="emulator"') and "function" not in str(raised.value)
     with pytest.warns(UserWarning):
-        assert plica.posterior(plica.Scenario(smallest), {YOUNG: (400, 1200)}, {"top.area_um2": (390, 20)}, runs=8, samples=50, jobs=1)
+        assert plica.posterior(plica.Scenario(without), {YOUNG: (400, 1200)}, {"top.apical_elongation": (1.05, 0.1)}, runs=8, samples=50, jobs=1)
     mean = {**BLOCK, "monitor": {"top": {"quantity": "area", "over": "mean"}}}
     with pytest.warns(UserWarning):
         assert plica.posterior(plica.Scenario(mean), {YOUNG: (400, 1200)}, {"top.area_um2": (390, 20)}, on="gradients", runs=10, jobs=1)
