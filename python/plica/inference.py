@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arguments import number_from, path_of, text_of, texts_of, told, whole
-from .errors import FileError
+from .errors import FileError, needed
 from .inference_problem import Field, Problem
 from .inference_search import Search
 from .knots import divided, times_of
@@ -112,6 +112,32 @@ class Inference:
             raise ValueError(f"part: {told(part)}; give a probability between 0 and 1")
         wide = NormalDist().inv_cdf(0.5 + inside / 2) * self.sd[law]
         return self.factors[law] * np.exp(-wide), self.factors[law] * np.exp(wide)
+
+    def plot(self) -> Any:
+        """Map the factors of each law, their standard deviations, and which cells the shapes do not show.
+
+        A flat sheet is seen from above; other tissues are unrolled about the x axis, with the ventral midline in the middle.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        plt = needed("matplotlib.pyplot", "plot")
+        x, y, z = (Simulation(self.scenario).cell_data[f"{axis}_um"] for axis in "xyz")
+        is_flat = np.ptp(z) < 0.2 * np.ptp(y)
+        across, name = (y, "y (µm)") if is_flat else (np.degrees(np.arctan2(y, -z)), "angle from the ventral midline (°)")
+        figure, axes = plt.subplots(len(self.factors), 3, figsize=(13, 3.6 * len(self.factors)), layout="constrained", squeeze=False)
+        size = min(300.0, 30000 / len(x))
+        for row, (law, factors) in zip(axes, self.factors.items()):
+            largest = max(1.05, float(np.nanmax(factors)), 1 / float(np.nanmin(factors)))
+            for ax, values, title, colours, limits in zip(
+                    row, (np.log2(factors), self.sd[law], self.unseen[law]),
+                    (f"{law}: log2 of the factor", "sd of the logarithm", "not seen: 1"), ("RdBu_r", "viridis", "Greys"),
+                    ((-np.log2(largest), np.log2(largest)), (0, None), (0, 1))):
+                shown = ax.scatter(x, across, c=values, s=size, marker="s", cmap=colours, vmin=limits[0], vmax=limits[1])
+                figure.colorbar(shown, ax=ax, shrink=0.8)
+                ax.set(title=title, xlabel="x (µm)", ylabel=name)
+        return figure
 
     def __repr__(self) -> str:
         lines = [f"Inference from {len(self.times_min)} times in {self.runs} runs" + ("" if self.converged else ", not converged")]

@@ -105,6 +105,8 @@ def test_nodes_that_are_not_seen(block_shape, tmp_path, capsys):
     low, high = found.interval(LAW)
     assert (low < found.factors[LAW]).all() and (found.factors[LAW] < high).all()
     assert np.array_equal(found.strengths[LAW], found.scale * found.factors[LAW])
+    pytest.importorskip("matplotlib")
+    assert [ax.get_title() for ax in found.plot().axes[:3]] == ["cortex.apical: log2 of the factor", "sd of the logarithm", "not seen: 1"]
     with pytest.raises(ValueError, match="is of a search with another scenario, other shapes or settings"):
         plica.infer(BLOCK, {1: shape + 0.01}, **settings)
     settings["file"].write_text("no search")
