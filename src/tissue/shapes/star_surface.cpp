@@ -23,10 +23,36 @@ std::array<Vec3, 2> tangents_of(const Vec3& direction) {
   return {first, direction.cross(first)};
 }
 
+// 1/(l^2 - m^2), for |m| < l.
+constexpr HarmonicValues recurrence_scales() {
+  HarmonicValues scales{};
+  for (int l = 1; l <= largest_harmonic_degree; ++l)
+    for (int m = 1 - l; m < l; ++m) scales[place(l, m)] = 1.0 / (l * l - m * m);
+  return scales;
+}
+
 double sum_of(const std::vector<double>& coefficients, const HarmonicValues& values, int degree) {
   double sum = 0;
   for (std::size_t i = 0; i < harmonic_count(degree); ++i) sum += coefficients[i] * values[i];
   return sum;
+}
+
+// The same for several functions at once; coefficients: by harmonic, then by function. Without any if degree < 0.
+template <std::size_t count>
+std::array<double, count> sums_of(const std::vector<std::array<double, count>>& coefficients,
+                                  const HarmonicValues& values, int degree) {
+  std::array<double, count> sums{};
+  for (std::size_t i = 0; degree >= 0 && i < harmonic_count(degree); ++i)
+    for (std::size_t k = 0; k < count; ++k) sums[k] += coefficients[i][k] * values[i];
+  return sums;
+}
+
+template <std::size_t count>
+std::vector<std::array<double, count>> by_harmonic(const std::array<std::vector<double>, count>& by_function) {
+  std::vector<std::array<double, count>> result(by_function.front().size());
+  for (std::size_t i = 0; i < result.size(); ++i)
+    for (std::size_t k = 0; k < count; ++k) result[i][k] = by_function[k][i];
+  return result;
 }
 
 // The least k for which det(hessian - k metric) is 0: a quadratic.
@@ -117,28 +143,25 @@ std::vector<double> fit_coefficients(const Vectors& points, const Frame& frame, 
 }  // namespace
 
 void evaluate_harmonics(const Vec3& direction, int degree, HarmonicValues& values) {
+  static constexpr HarmonicValues scales = recurrence_scales();
   const double x = direction.x(), y = direction.y(), z = direction.z();
-  double real = 1, imaginary = 0;  // R_mm
-  for (int m = 0; m <= degree; ++m) {
-    if (m > 0) {
-      const double next = (x * real - y * imaginary) / (2 * m);
-      imaginary = (x * imaginary + y * real) / (2 * m);
-      real = next;
-    }
-    // (l^2 - m^2) R_lm = (2l - 1) z R_(l-1)m - R_(l-2)m on the unit sphere.
-    double before[2] = {0, 0}, last[2] = {real, imaginary};
-    for (int l = m; l <= degree; ++l) {
-      if (l > m) {
-        const double scale = 1.0 / (l * l - m * m);
-        for (int part = 0; part < 2; ++part) {
-          const double next = scale * ((2 * l - 1) * z * last[part] - before[part]);
-          before[part] = last[part];
-          last[part] = next;
-        }
-      }
-      values[place(l, -m)] = last[1];
-      values[place(l, m)] = last[0];
-    }
+  double real = 1, imaginary = 0;  // R_ll
+  values[0] = 1;
+  for (int l = 1; l <= degree; ++l) {
+    const double next = (x * real - y * imaginary) / (2 * l);
+    imaginary = (x * imaginary + y * real) / (2 * l);
+    real = next;
+    // (l^2 - m^2) R_lm = (2l - 1) z R_(l-1)m - R_(l-2)m on the unit sphere, the last 0 where |m| > l - 2.
+    const double z_l = (2 * l - 1) * z;
+    double* row = &values[place(l, 0)];
+    const double* scale = &scales[place(l, 0)];
+    const double* last = &values[place(l - 1, 0)];
+    row[-l] = imaginary;
+    row[l] = real;
+    for (const int m : {1 - l, l - 1}) row[m] = scale[m] * (z_l * last[m]);
+    if (l < 2) continue;
+    const double* before = &values[place(l - 2, 0)];
+    for (int m = 2 - l; m <= l - 2; ++m) row[m] = scale[m] * (z_l * last[m] - before[m]);
   }
 }
 
@@ -233,9 +256,13 @@ StarSurface::StarSurface(const Mat3& axes, const Vec3& half_axes_um, const std::
       radius_(coefficients) {
   const std::vector<double> norms = harmonic_norms(degree_);
   for (std::size_t i = 0; i < radius_.size(); ++i) radius_[i] *= norms[i];
-  for (int axis = 0; axis < 3; ++axis) gradient_[axis] = harmonic_derivative(radius_, degree_, axis);
+  std::array<std::vector<double>, 3> gradient;
+  for (int axis = 0; axis < 3; ++axis) gradient[axis] = harmonic_derivative(radius_, degree_, axis);
   constexpr std::array<std::array<int, 2>, 6> pairs = {{{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
-  for (int i = 0; i < 6; ++i) hessian_[i] = harmonic_derivative(gradient_[pairs[i][0]], degree_, pairs[i][1]);
+  std::array<std::vector<double>, 6> hessian;
+  for (int i = 0; i < 6; ++i) hessian[i] = harmonic_derivative(gradient[pairs[i][0]], degree_, pairs[i][1]);
+  gradient_ = by_harmonic(gradient);
+  hessian_ = by_harmonic(hessian);
 
   sample_directions_ = even_directions(sample_count);
   least_radius_ = std::numeric_limits<double>::infinity();
@@ -262,15 +289,10 @@ StarSurface::Chart StarSurface::chart(const Vec3& direction) const {
   HarmonicValues values;
   evaluate_harmonics(direction, degree_, values);
   const double rho = sum_of(radius_, values, degree_);
-  Vec3 gradient = Vec3::Zero();
-  for (int axis = 0; axis < 3; ++axis)
-    if (degree_ > 0) gradient[axis] = sum_of(gradient_[axis], values, degree_ - 1);
-  Mat3 hessian = Mat3::Zero();
-  if (degree_ > 1) {
-    std::array<double, 6> h{};
-    for (int i = 0; i < 6; ++i) h[i] = sum_of(hessian_[i], values, degree_ - 2);
-    hessian << h[0], h[3], h[4], h[3], h[1], h[5], h[4], h[5], h[2];
-  }
+  const Vec3 gradient(sums_of(gradient_, values, degree_ - 1).data());
+  const auto [xx, yy, zz, xy, xz, yz] = sums_of(hessian_, values, degree_ - 2);
+  Mat3 hessian;
+  hessian << xx, xy, xz, xy, yy, yz, xz, yz, zz;
 
   Chart c;
   c.tangents = tangents_of(direction);
@@ -303,9 +325,7 @@ Vec3 StarSurface::put_on(const Vec3& point) const {
     const Vec3 d = u / length;
     HarmonicValues values;
     evaluate_harmonics(d, degree_, values);
-    Vec3 slope = Vec3::Zero();
-    for (int axis = 0; axis < 3; ++axis)
-      if (degree_ > 0) slope[axis] = sum_of(gradient_[axis], values, degree_ - 1);
+    const Vec3 slope(sums_of(gradient_, values, degree_ - 1).data());
     const Vec3 gradient = to_scaled_.transpose() * (d - (slope - slope.dot(d) * d) / length);
     x -= (length - sum_of(radius_, values, degree_)) / gradient.squaredNorm() * gradient;
   }

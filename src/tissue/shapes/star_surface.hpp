@@ -110,8 +110,8 @@ class StarSurface {
   Mat3 to_real_, to_scaled_;
   int degree_;
   std::vector<double> radius_;                   // coefficients of unscaled harmonics
-  std::array<std::vector<double>, 3> gradient_;  // derivatives along x, y, z
-  std::array<std::vector<double>, 6> hessian_;   // xx, yy, zz, xy, xz, yz
+  std::vector<std::array<double, 3>> gradient_;  // derivatives along x, y, z
+  std::vector<std::array<double, 6>> hessian_;   // xx, yy, zz, xy, xz, yz
   Vectors sample_directions_, samples_;          // start points of the search for the nearest place
   double least_radius_ = 0;
 };
