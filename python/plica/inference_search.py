@@ -246,9 +246,13 @@ class Search:
 
     def state(self) -> dict[str, Any]:
         """Return what a later session continues from."""
-        return {"v": self.v, "spreads": self.spreads, "weight": self.weight, "times": self.times, "is_slow": self._is_slow,
-                "runs": self.problem.runs}
+        return {"v": self.v, "logs": np.concatenate(self.problem.logs(self.v)), "spreads": self.spreads, "weight": self.weight,
+                "times": self.times, "is_slow": self._is_slow, "runs": self.problem.runs}
 
     def restore(self, state: Mapping[str, Any]) -> None:
-        self.v, self.spreads, self.weight = np.array(state["v"]), np.array(state["spreads"]), float(state["weight"])
+        self.v, logs = np.array(state["v"]), np.array(state["logs"])
+        # Eigenvectors of equal eigenvalues may be others on another machine; then the factors count.
+        if not np.allclose(np.concatenate(self.problem.logs(self.v)), logs, rtol=0, atol=1e-9):
+            self.v = np.concatenate([field.vectors.T @ part for field, part in zip(self.problem.fields, self.problem.by_law(logs))])
+        self.spreads, self.weight = np.array(state["spreads"]), float(state["weight"])
         self.times, self.problem.runs, self._is_slow = int(state["times"]), int(state["runs"]), bool(state["is_slow"])
